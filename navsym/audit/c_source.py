@@ -6,7 +6,17 @@ import re
 from dataclasses import dataclass, field
 from typing import Any
 
-from navsym.audit.form import NO_EXPRESSION, TWO_DEFINITIONS, UNDEFINED, Argument, Part, names_in, walk
+from navsym.audit.form import (
+    NO_EXPRESSION,
+    OTHER_NAME,
+    SECOND,
+    TWO_DEFINITIONS,
+    UNDEFINED,
+    Argument,
+    Part,
+    names_in,
+    walk,
+)
 from navsym.audit.functions import METHODS
 from navsym.audit.preprocessor import WAYS, drop_ways, region_of
 from navsym.audit.syntax import SourceReader, ascend, descend, field_of, identifiers_in, list_above, named, text_of
@@ -19,6 +29,10 @@ MATRIX = re.compile(
     r"(?:\w+::)*(?:(?:Square)?Matrix([2-9]|[1-5]\d)[fd]?(?:<\w+>)?|Dcm[fd]?|Dcm<\w+>|SquareMatrix<\w+,(\d+)>|Matrix<\w+,(\d+),(\d+)>)"
 )
 NAMED = ("preproc_def", "enumerator")
+#: What gives a class a meaning of its own, and how a type is called whose objects do something when they are made.
+ACTIVE, MADE = ("operator_name", "base_class_clause"), "an object of the file"
+#: Words that a macro may stand for, and nothing is read that was not there.
+IDLE = frozenset("inline const static register restrict volatile".split())
 ODD = ("union_specifier", "bitfield_clause")  # whose members share their place, or hold less than their type
 SCOPES = ("namespace_definition", "struct_specifier", "class_specifier")
 DECLARING = (
@@ -32,6 +46,7 @@ QUATERNION = re.compile(r"Quaternion[fd]|(Eigen::)Quaternion([fd]|<\w+>)")
 #: What stands between two parts of a name and is no plain number: a call with arguments, or an index.
 COMPUTED = re.compile(r"\(\s*[^)\s]|\[(?!(0|[1-9]\d*)\])")
 POINTER = ("pointer_declarator", "abstract_pointer_declarator")
+SECONDS = ("pointer_declarator", "reference_declarator")
 
 
 def shape_of_type(text: str) -> tuple[int, ...] | None:
@@ -149,15 +164,17 @@ class Reader(SourceReader):
                 else:
                     self.read_field(node)
         self.unit.constants.sort(key=lambda statement: statement.span)
-        self.unit.macros |= dict.fromkeys(others & {*self.unit.macros}, "a macro, and a name of something else as well")
+        self.unit.macros |= dict.fromkeys(others & self.directives, "a macro, and a name of something else as well")
 
     def read_field(self, node: Any) -> None:
         """A member of a structure, or a variable of the file; one name with two types is left open."""
-        kind = number_of(self.type_of(node))
-        kind = kind if kind in LIMITS else "real"
+        kind = number_of(text := self.type_of(node))
+        kind = kind if kind in LIMITS else "other" if text == "volatile" else "real"
         is_inside = "function_definition" in list_above(node) and "field" not in node.type
         for child in node.children_by_field_name("declarator") if not is_inside else ():
             name, members = self.declared(field_of(child, "declarator") or child)[0], self.unit.members
+            if child.type == "init_declarator" and field_of(child, "declarator").type in SECONDS:
+                self.unit.macros[name] = OTHER_NAME
             members[name] = (kind if members.get(name, (kind,))[0] == kind else "other", None)
 
     def read_enumerators(self, node: Any) -> None:
@@ -189,7 +206,7 @@ class Reader(SourceReader):
         declarator, body = head_of_function(node), field_of(node, "body")
         if declarator is None or body is None:
             return
-        name = text_of(field_of(declarator, "declarator")).split("::")[-1]
+        name = text_of(field_of(declarator, "declarator")).split("<")[0].split("::")[-1]
         parameters = named(field_of(declarator, "parameters"))
         declared = (n for n in descend(node) if n.type in ("declaration", "parameter_declaration"))
         inner = [field_of(c, "declarator") or c for n in declared for c in n.children_by_field_name("declarator")]
@@ -205,9 +222,13 @@ class Reader(SourceReader):
         before = [c for c in named(node) if c.type == "field_initializer_list"]  # what is in no statement
         start = tuple(self.part("unread", c, "the list of members before a constructor", ()) for c in before)
         is_plain = field_of(node, "declarator").type == "function_declarator" and field_of(node, "type") is not None
-        number = number_of(self.type_of(node)) if is_plain else "auto"
+        is_second = field_of(node, "declarator").type in SECONDS
+        is_second &= all(text_of(child) != "const" for child in named(node))
+        number = number_of(self.type_of(node)) if is_plain else SECOND if is_second else "auto"
         whole = start + self.block(body)
-        if not all(p.type.endswith("parameter_declaration") for p in parameters):
+        if self.directives & {n.type for n in descend(node) if not n.is_named} - IDLE:
+            whole = (self.part("jump", node, "a macro in the place of a word of the language", ()),)
+        if not all(p.type.endswith("parameter_declaration") and "volatile" not in text_of(p) for p in parameters):
             whole = (self.part("jump", node, "parameters outside the language of audit", ()),)
         self.define(node, name, arguments, whole, (), number)
 
@@ -226,8 +247,11 @@ class Reader(SourceReader):
     def type_of(self, node: Any) -> str:
         """The type of a declaration, with names of types that the file defines replaced."""
         text, types = text_of(field_of(node, "type")), self.unit.types
+        if any(text_of(child) == "volatile" for child in named(node)):
+            return "volatile"
         for _ in range(ROUNDS):
             text = re.sub(r"(?<![\w:])\w+", lambda found: types.get(found[0], found[0]), text)
+        text = "a macro" if self.directives & {*re.findall(r"\w+", text)} else text
         for child in node.children_by_field_name("declarator"):
             if name := re.search(r"[A-Za-z_]\w*", text_of(child)):
                 self.unit.kinds.setdefault(name[0], set()).add(text)
@@ -329,9 +353,11 @@ class Reader(SourceReader):
     def declaration(self, node: Any) -> tuple[Part, ...]:
         """One statement for each declared name."""
         words = {text_of(child) for child in named(node) if child.type in ("storage_class_specifier", "type_qualifier")}
-        if words & {"static", "thread_local", "extern", "volatile"} and not words & {"const", "constexpr"}:
+        if words & {"static", "thread_local", "extern"} and not words & {"const", "constexpr"}:
             return (self.unread(node, "a variable that keeps its value between calls, or is changed elsewhere"),)
         kind = self.type_of(node)
+        if kind == "volatile" or (MADE in (kind, self.unit.types.get(kind.split("::")[-1])) and not is_second(node)):
+            return (self.part("jump", node, "a volatile variable, or an object that may do more when it is made", ()),)
         done = []
         for child in node.children_by_field_name("declarator"):
             value = field_of(child, "value") if child.type == "init_declarator" else None
@@ -345,6 +371,9 @@ class Reader(SourceReader):
                 start = items[0] if len(items) == 1 and number_of(kind) != "other" else whole
             else:
                 start = None if value is None else self.expression(value)
+            if "static" in words and start is not None and names_in(start) & self.locals:
+                done.append(self.unread(child, "a variable that keeps the value of the first call"))
+                continue
             if inner.type == "structured_binding_declarator":
                 done.append(self.unread(child, "several names declared at once"))
                 continue
@@ -395,9 +424,8 @@ class Reader(SourceReader):
                 is_chain = right.type == "assignment_expression"  # a = b = c
                 first, right = (self.effect(right), field_of(right, "left")) if is_chain else ((), right)
                 left, value = self.expression(field_of(node, "left")), self.expression(right)
-                sides = names_in(*(side for side in value.parts[1:] if value.kind == "op" and side.kind != "op"))
-                if "noalias()" in text_of(field_of(node, "left")) and names_in(left) & sides:
-                    return (self.unread(node, "noalias() of a product with the target in it"),)
+                if "noalias()" in text_of(field_of(node, "left")) and names_in(left) & names_in(value):
+                    return (self.unread(node, "noalias() of what the target is in"),)
                 return (*first, self.part("assign", node, left, sign, value))
             case "update_expression":
                 target, sign = self.expression(field_of(node, "argument")), text_of(field_of(node, "operator"))[0]
@@ -505,7 +533,9 @@ class Reader(SourceReader):
             return self.part("method", node, base, method, arguments)
         name = re.sub(r"\s", "", text_of(function))
         if function.type == "primitive_type" or (name in REAL and len(arguments) == 1):
-            return self.part("cast", node, number_of(name), arguments[0]) if arguments else self.refuse(node, "a cast")
+            kind = number_of(self.unit.types.get(name, name) if name not in self.directives else "a macro")
+            is_known = arguments and kind in (*LIMITS, "real")
+            return self.part("cast", node, kind, arguments[0]) if is_known else self.refuse(node, "a cast")
         if name in ("static_cast<float>", "static_cast<double>") and arguments:
             return self.part("cast", node, "real", arguments[0])
         if QUATERNION.fullmatch(name):
@@ -579,6 +609,12 @@ def head_of_function(node: Any) -> Any:
     return head
 
 
+def is_second(node: Any) -> bool:
+    """True for a declaration of pointers and references only."""
+    inner = (field_of(child, "declarator") or child for child in node.children_by_field_name("declarator"))
+    return all(child.type in SECONDS for child in inner)
+
+
 def is_constant(node: Any) -> bool:
     """True for the declaration of a constant outside of functions."""
     is_const = any(text_of(child) in ("const", "constexpr") for child in node.children)
@@ -602,9 +638,11 @@ def list_types(nodes: list[Any]) -> dict[str, str]:
     templates = (node for node in nodes if node.type.endswith("type_parameter_declaration"))
     open_types = {text_of(inner) for node in templates for inner in named(node)}
     for node in nodes:
-        is_class = node.type in ("struct_specifier", "class_specifier") and node.parent.type != "template_declaration"
-        if is_class and any(inner.type == "operator_name" for inner in descend(node)):
-            types[text_of(field_of(node, "name"))] = "own"  # with operators of its own, also where its name is known
+        if node.type in ("struct_specifier", "class_specifier") and (body := field_of(node, "body")) is not None:
+            name = text_of(field_of(node, "name"))
+            heads = {text_of(field_of(n, "declarator")) for n in descend(body) if n.type == "function_declarator"}
+            is_made = heads & {name, f"~{name}"} or any(n.type in ACTIVE for n in descend(node))
+            types[name] = MADE if is_made else "own"
         if node.type in ("type_definition", "alias_declaration"):
             name = field_of(node, "declarator") or field_of(node, "name")
             is_plain = name.type == "type_identifier"

@@ -10,7 +10,7 @@ from fractions import Fraction
 from typing import Any, ClassVar
 
 from navsym.audit.cases import Condition, Reading
-from navsym.audit.form import Argument, Function, Part, Unit, head_of, names_in, spell_entry, walk
+from navsym.audit.form import SECOND, Argument, Function, Part, Unit, head_of, names_in, spell_entry, walk
 from navsym.audit.functions import CONSTANTS, KNOWN, NAMED_CALLS, call_known, extreme_of, is_known, is_method, is_view
 from navsym.audit.values import (
     CUT,
@@ -37,6 +37,7 @@ from navsym.audit.values import (
     does_fit,
     find_unread,
     forbid,
+    is_truth,
     join,
     map_cells,
     minus,
@@ -47,7 +48,7 @@ from navsym.audit.values import (
     share,
     total,
 )
-from navsym.audit.writes import changed_in, sources_of
+from navsym.audit.writes import changed_in, owners_in, sources_of
 from navsym.language.tree import Tree, build_call, build_number
 
 TRUTHS = ("compare", "both", "either", "not")
@@ -86,6 +87,7 @@ class Evaluator:
     aliases : reference or pointer to a structure -> the structure, and the sign before a member of it
     shadows : what a block's own names have hidden, one table for each block
     ended   : the names of blocks that have ended
+    seconds : pointers and references to what is not known
     outputs : what the last function of MATLAB that was read returned
     """
 
@@ -118,6 +120,7 @@ class Evaluator:
     lost: Unread | None = None
     lost_heads: dict[str, Unread] = field(default_factory=dict)
     outputs: list[Value] = field(default_factory=list)
+    seconds: list[Variable] = field(default_factory=list)
 
     @property
     def unit(self) -> Unit:
@@ -134,12 +137,15 @@ class Evaluator:
         if name in self.unit.macros:
             raise Unreadable(f"{name}, a macro where a variable is needed")
         if name not in self.globals:
+            owners = owners_in(self.unit, name)
+            forbid(owners, f"a member of what {', '.join(owners)} of this file gives")
             shape, head = self.shapes.get(name), head_of(name)
             if head in self.lost_heads:
                 return Variable(name, shape=shape, is_input=True, all_unread=self.lost_heads[head])
             own = re.split(r"->|\.", name)[-1] if self.unit.language in ("c", "cpp") else name
             number, sizes = self.unit.members.get(own, ("real", None))
             self.globals[name] = Variable(name, number, shape or sizes, is_input=True, all_unread=self.lost)
+            share(self.globals[name], self.seconds)
         return self.globals[name]
 
     def canonical(self, name: str) -> str:
@@ -177,7 +183,9 @@ class Evaluator:
 
     def whole(self, part: Part) -> int:
         """A constant whole number."""
-        if (exact := constant_of(self.value(part))) is None or exact.denominator != 1:
+        value = self.value(part)
+        forbid(self.unit.language == "python" and is_truth(value), "a truth where a whole number is needed", part.line)
+        if (exact := constant_of(value)) is None or exact.denominator != 1:
             raise Unreadable("an index or size that is no constant", part.line)
         return int(exact)
 
@@ -309,7 +317,8 @@ class Evaluator:
             if kind == "not" and self.unit.language == "rust" and part.parts[0].kind not in TRUTHS:
                 raise Unreadable("! of what may be an integer")
             if kind == "compare" or (kind in ("both", "either", "not") and self.unit.rules.integer):
-                return Scalar(build_number(int(self.decide_known(part))), "int")
+                kind = "bool" if self.unit.language == "python" else "int"  # True is no index of numpy
+                return Scalar(build_number(int(self.decide_known(part))), kind)
             if kind == "choose":
                 chosen, other = part.parts[1:] if self.decide(part.parts[0]) else part.parts[:0:-1]
                 return self.common(self.value(chosen), other)
@@ -364,6 +373,7 @@ class Evaluator:
         kind = self.kind_of(other)
         forbid(not kind, "a choice between numbers whose type is not known", other.line)
         number = "real" if kind == "real" else max(promote(kind), value.number)
+        forbid(number in LIMITS and not does_fit(value, number), CUT, other.line)
         return require_fit(self.unit, replace(value, number=number))
 
     def kind_of(self, part: Part) -> str:
@@ -513,6 +523,7 @@ class Evaluator:
         if name in self.calls or len(self.calls) >= INLINED:
             raise Unreadable(f"the recursion of {name}" if name in self.calls else "calls nested too deep")
         function = candidates[0]
+        forbid(function.number == SECOND, f"{name}, which gives another name of something")
         forbid(any(a.name.startswith("*") for a in function.arguments), f"{name} of any number of arguments")
         self.require_no_structure(function, arguments)
         frame = {a.name: self.bind(a, given, function) for a, given in zip(function.arguments, arguments, strict=True)}
@@ -564,6 +575,8 @@ class Evaluator:
         is_number = argument.shared and self.unit.language == "cpp" and argument.number == "real"
         if is_number and given is inner and self.kind_of(inner) in LIMITS:
             argument = replace(argument, shared=False)  # const double & is a copy of an integer
+        is_open = self.unit.language == "cpp" and argument.number == "other" and not argument.shared
+        forbid(is_open and argument.name in changed, f"what {function.name} may change, or a copy of it")
         if inner.kind == "name" and (argument.shared or given.kind == "address" or argument.shape is not None):
             variable = self.variable(inner.parts[0])
             if argument.shape is not None and variable.shape is None and not variable.cells:

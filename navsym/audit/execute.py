@@ -41,13 +41,12 @@ from navsym.audit.values import (
     lose,
     lose_views,
     make_array,
-    map_cell,
     places_of,
     promote,
-    require_fit,
+    require_one_sign,
     share,
 )
-from navsym.audit.writes import Writes, changed_in, find_race, is_naming, list_links, sources_of, written_by
+from navsym.audit.writes import Writes, changed_in, find_race, is_naming, list_links, owners_in, sources_of, written_by
 from navsym.core.errors import TooLargeError
 from navsym.language.tree import NUMBER, ZERO, build_number
 
@@ -179,7 +178,7 @@ class Machine(Evaluator):
         names = {*writes.names, *(self.frame if closures else ())}
         names |= {self.canonical(name + ".").rstrip(".->") for name in names}
         for name in names | {base for n in names if self.variable_shape(base := n.rpartition(".")[0])}:
-            if name in self.frame or name not in {*self.file_names, *self.unit.macros}:
+            if name in self.frame or not (name in {*self.file_names, *self.unit.macros} or owners_in(self.unit, name)):
                 lose(self.variable(name), unread)
                 self.lose_members(name, unread)
         for name, sources in list_links(self.unit, statement) if is_naming(self.unit, statement) else ():
@@ -187,6 +186,9 @@ class Machine(Evaluator):
             is_object = statement.kind == "declare" and statement.parts[1] == "other"  # which may keep references
             known = [v for n in sources if is_object and (v := self.frame.get(n) or self.globals.get(n)) is not None]
             share(variable, known or self.arrays_in(sources))
+            if statement.kind == "declare" and statement.parts[4] != "const" and called_in(statement):
+                share(variable, [*self.globals.values()])  # it may be another name of any
+                self.seconds.append(variable)
         if writes.leaves:
             self.stop(unread)
 
@@ -281,7 +283,10 @@ class Machine(Evaluator):
                 raise Unreadable("a reference or pointer to a structure that is no name")
             return
         if number == "other" and any(name in table for table in self.shadows[:-1]):
-            raise Unreadable("a structure that hides another of its name")
+            self.stop(Unread(statement.line, "a structure that hides another of its name"))
+        if number == "other" and value is None:
+            for member in (v for v in (*self.frame.values(), *self.globals.values()) if head_of(v.name) == name):
+                member.all_unread = Unread(statement.line, f"{name} is made anew, with members that are not known")
         self.require_order(*([value] if value is not None else ()))
         sizes = () if shape is None else tuple(self.whole(size) for size in shape)
         result = None if value is None else self.value(value)
@@ -614,8 +619,7 @@ class Machine(Evaluator):
             return True  # numbers are real numbers here
         both = [*map(self.value, sides), Scalar(ZERO, "int")][:2]
         a, b = (demand(value, Scalar, "a condition on what is not read") for value in both)
-        for one, other in ((a, b), (b, a)):  # -1 < 1U does not hold
-            require_fit(self.unit, map_cell(lambda x, _: x, one, other))
+        require_one_sign(a, b)  # -1 < 1U does not hold
         if a.tree.head == b.tree.head == NUMBER:
             return COMPARE[sign](a.tree.args[0], b.tree.args[0])
         return self.choose(Condition(self.unit.text(test), test.line, True, sign, a.tree, b.tree))

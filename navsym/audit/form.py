@@ -16,7 +16,10 @@ from navsym.language.tree import Tree
 #: Macros whose text is not known as an expression: it may write to anything, or leave the function.
 NO_EXPRESSION, TWO_DEFINITIONS = "a macro that is no expression", "a macro with two definitions"
 UNDEFINED = "a macro that is undefined again"
-HIDDEN_MACROS = (NO_EXPRESSION, TWO_DEFINITIONS, UNDEFINED)
+OTHER_NAME = "a pointer or reference of the file, which is another name of something"
+HIDDEN_MACROS = (NO_EXPRESSION, TWO_DEFINITIONS, UNDEFINED, OTHER_NAME)
+#: What a function of C gives that may be written to.
+SECOND = "another name"
 
 
 @dataclass(frozen=True, slots=True, eq=False)

@@ -3,17 +3,29 @@
 from __future__ import annotations
 
 import re
-from dataclasses import dataclass, field, replace
+from collections import Counter
+from dataclasses import dataclass, field
 from typing import Any
+from unicodedata import is_normalized
 
 from navsym.audit.form import Argument, Part, names_in, walk
 from navsym.audit.functions import CONSTANTS, HARMLESS, NUMBERS, PURE, bare_name, is_known, is_method, names_view
-from navsym.audit.syntax import OPERATORS, SourceReader, ascend, descend, field_of, list_above, named, text_of
+from navsym.audit.syntax import (
+    OPERATORS,
+    SourceReader,
+    ascend,
+    descend,
+    field_of,
+    identifiers_in,
+    list_above,
+    named,
+    text_of,
+)
 
 #: Decorators that leave a function what it is.
 PLAIN_DECORATORS = re.compile(
     r"@((abc\.)?(abstractmethod|staticmethod|classmethod|property)|((nb|numba)\.)?(jit|njit)(\(.*\))?"
-    r"|functools\.\w*cache(\(.*\))?|override|final)", re.DOTALL
+    r"|override|final)", re.DOTALL
 )  # fmt: skip
 MODULES = {"numpy": "np.", "math": "math.", "numpy.linalg": "np.linalg."}
 NUMERIC = ("numpy", "math", "autograd.numpy", "jax.numpy")
@@ -21,7 +33,9 @@ NUMERIC = ("numpy", "math", "autograd.numpy", "jax.numpy")
 NAMES = ("np", "numpy", "math", "abs", "max", "min", "float", "range")
 #: What may write any name of the module, or a member of what it is given.
 RUNNING, ANY = ("exec", "eval", "globals", "vars", "locals", "setattr", "delattr"), "*"
-AGAIN = "a function whose name stands for something else later"
+AGAIN = "a function whose name may stand for something else"
+#: Modules with decorators that leave a function what it is.
+DECORATING = ("numba", "functools", "abc", "typing", "typing_extensions")
 
 
 @dataclass(slots=True, eq=False)
@@ -29,6 +43,9 @@ class Reader(SourceReader):
     """Walks the syntax tree of Python.
 
     rebound : names of modules and of their functions that the file uses for something else
+    times   : how often the module binds a name, in whatever way
+    star    : where the last import of all names of a module is
+    made    : names that are not those of a module with known decorators
     changed : names outside of functions that hold more than their one value
     given   : names whose arrays get another name, or go to what may write to them
     free, methods : the functions of the file, outside of classes and in them
@@ -41,6 +58,9 @@ class Reader(SourceReader):
     given: set[str] = field(default_factory=set)
     free: set[str] = field(default_factory=set)
     methods: set[str] = field(default_factory=set)
+    times: Counter[str] = field(default_factory=Counter)
+    star: int = -1
+    made: set[str] = field(default_factory=set)
     OPERATORS = OPERATORS | {sign: ("op", sign) for sign in ("//", "@", "**")}
 
     @staticmethod
@@ -63,52 +83,52 @@ class Reader(SourceReader):
                     self.unit.imported[text_of(own)] = MODULES[module] + text_of(field_of(child, "name") or child)
 
     def read_changes(self, root: Any) -> None:
-        """Note the names that are written by parts, by more than one assignment, or as ``global``."""
-        for node in descend(root):
-            bound = list[str]()
+        """Note what the names of the module are bound to, and which are written by parts or as ``global``."""
+        nodes = [*descend(root)]
+        for node in nodes:
+            above, names = list_above(node), bound_by(node)
+            is_local = "function_definition" in above or "lambda" in above
+            is_class, is_import = "class_definition" in above, node.type.startswith(("import", "aliased"))
             if node.type == "identifier" and may_be_given(node):
                 self.given.add(text_of(node))
+            if node.type == "identifier" and text_of(node).strip("_") == "builtins":
+                names = [*NAMES, ANY]
+            elif node.type == "function_definition":
+                (self.methods if is_class else self.free).add(names[0])
             elif node.type == "global_statement":
                 self.changed |= {text_of(name) for name in named(node)}
-            elif node.type in ("assignment", "augmented_assignment", "for_statement"):
-                left = field_of(node, "left")
-                for target in named(left) if left.type.endswith(("_list", "_pattern")) else [left]:
-                    bound.append(re.match(r"\w*", text_of(target))[0])  # type: ignore[index]
-                    above = list_above(node)
-                    is_local = target.type == "identifier" and "function_definition" in above
-                    is_alone = node.type == "assignment" and target is left and left.type == "identifier"
-                    is_top = above[1:2] == ["module"] or above[1:3] == ["block", "class_definition"]
-                    if not is_local and not (is_alone and is_top):
-                        self.changed.add(bound[-1])
-            elif node.type in ("function_definition", "class_definition"):
-                bound = [text_of(field_of(node, "name"))]
-                (self.methods if "class_definition" in list_above(node) else self.free).add(bound[0])
-            elif node.type == "parameters":
-                bound = [*map(name_parameter, named(node))]
-            elif node.type == "import_from_statement":
-                is_known = node.parent.type == "module" and text_of(field_of(node, "module_name")) in MODULES
-                names = () if is_known else node.children_by_field_name("name")
-                bound = [text_of(field_of(n, "alias") or n) for n in names if text_of(n) != "numpy"]
-                self.rebound |= {*bound} & {*CONSTANTS}
-            elif node.type in ("named_expression", "as_pattern_target"):
-                bound = [text_of(named(node)[0])] if named(node) else []
-                self.changed |= {*bound}
+            elif node.type == "wildcard_import":
+                self.star = max(self.star, node.start_byte)
+                names = ["abs", "max", "min", "float", "range", *(() if is_numeric(node.parent) else NAMES)]
             elif node.type == "call" and text_of(field_of(node, "function")) in RUNNING:
                 given = named(field_of(node, "arguments"))[:1]
-                bound = [*map(text_of, given)] if "attr" in text_of(field_of(node, "function")) else [*NAMES, ANY]
-                self.changed |= {*bound}
-            elif node.type == "aliased_import" and text_of(field_of(node, "name")) not in NUMERIC:
-                bound = [text_of(field_of(node, "alias"))]
-            self.rebound |= {*bound} & {*NAMES, *self.unit.imported}
+                names = [*map(text_of, given)] if "attr" in text_of(field_of(node, "function")) else [*NAMES, ANY]
+                self.changed |= {*names}
+            elif node.type in ("assignment", "augmented_assignment", "for_statement"):
+                targets = list_targets(node)  # an entry or a member changes what a name of the module holds
+                self.changed |= {n for n, t in zip(names, targets, strict=True) if t.type != "identifier"}
+            if not is_local and not is_class:
+                self.times.update(names)
+            is_other = not is_numeric(node) or (is_local and node.type == "import_from_statement")
+            if not is_import or is_other:
+                self.rebound |= {*names} & {*NAMES, *self.unit.imported, *CONSTANTS}
+            self.made |= {*(() if is_import and is_decorating(node) else names)}
+        known = {name for name in self.unit.imported if self.times[name] > 1}
+        self.rebound |= known
+
+    def is_lasting(self, name: str, node: Any) -> bool:
+        """True for a name of the module that stands for one thing from its definition on."""
+        is_once = self.times[name] == 1 and not {name, ANY} & self.changed
+        return is_once and node.start_byte > self.star
 
     def read_body(self, nodes: list[Any], is_class: bool = False) -> None:
         """Functions and methods, and names of the module that are assigned once, to numbers."""
-        assigned: dict[str, list[Part]] = {}
+        assigned: dict[str, list[tuple[Any, Part]]] = {}
         for node in nodes:
             other = None
             if node.type == "decorated_definition":
                 decorators = (c for c in named(node) if c.type == "decorator")
-                other = next((c for c in decorators if not PLAIN_DECORATORS.fullmatch(text_of(c))), None)
+                other = next((c for c in decorators if not self.is_plain(c)), None)
                 node = field_of(node, "definition")
             if node.type == "class_definition":
                 self.read_body(named(field_of(node, "body")), is_class=True)
@@ -119,13 +139,16 @@ class Reader(SourceReader):
                     if statement.kind != "assign" or self.unit.text(statement.parts[2]) == "None":  # set elsewhere
                         continue
                     if statement.parts[0].kind == "name":
-                        assigned.setdefault(statement.parts[0].parts[0], []).append(statement)
+                        assigned.setdefault(statement.parts[0].parts[0], []).append((node, statement))
         for name, many in assigned.items():
-            is_open = bool({name, ANY} & self.changed) or (name in self.given and may_be_array(many[0].parts[2]))
-            if len(many) == 1 and not is_class and not many[0].parts[1] and not is_open:
-                self.unit.constants += many
-            for function in self.unit.functions.get(name, []):
-                self.unit.functions[name] = [replace(function, body=(self.part("jump", nodes[0], AGAIN, ()),))]
+            is_open = name in self.given and may_be_array(many[0][1].parts[2])
+            if not is_class and not many[0][1].parts[1] and not is_open and self.is_lasting(name, many[0][0]):
+                self.unit.constants.append(many[0][1])
+
+    def is_plain(self, decorator: Any) -> bool:
+        """True for a decorator that leaves a function what it is, and is none of the file."""
+        text = text_of(decorator)
+        return PLAIN_DECORATORS.fullmatch(text) is not None and not {*re.findall(r"\w+", text)} & self.made
 
     def read_function(self, node: Any, decorator: Any = None) -> None:
         """A function; one whose decorator may change it is not read."""
@@ -134,6 +157,10 @@ class Reader(SourceReader):
         body = self.block(field_of(node, "body"))
         if decorator is not None:
             body = (self.part("jump", decorator, "a decorator that may change the function", ()),)
+        if "class_definition" not in list_above(node) and not self.is_lasting(name, node):
+            body = (self.part("jump", node, AGAIN, ()),)
+        if any(n.type == "identifier" and not is_normalized("NFKC", text_of(n)) for n in descend(node)):
+            body = (self.part("jump", node, "a name that Python takes for another one", ()),)
         arguments = arguments[1:] if arguments and arguments[0].name == "self" else arguments
         self.define(node, name, arguments, body)
 
@@ -177,7 +204,7 @@ class Reader(SourceReader):
                 return (self.part("assign", node, left, sign, right),)
             case "call":
                 return (self.part("do", node, self.expression(node)),)
-            case "string" | "ellipsis":
+            case "string" | "ellipsis" if not any(inner.type == "interpolation" for inner in descend(node)):
                 return ()
         return (self.unread(node, "an expression without an assignment"),)
 
@@ -289,6 +316,53 @@ class Reader(SourceReader):
         owner = next((above for above in ascend(node) if above.type == "class_definition"), None)
         names = {text_of(field_of(field_of(n, "definition") or n, "name")) for n in named(field_of(owner, "body"))}
         return method in names or (owner is None and (self.shift < 0 or method in self.free | self.methods))
+
+
+def list_targets(node: Any) -> list[Any]:
+    """What an assignment or a loop writes: names, entries and members."""
+    waiting, done = [field_of(node, "left")], list[Any]()
+    while waiting:
+        target = waiting.pop(0)
+        is_several = target.type.endswith(("_list", "_pattern")) or target.type in ("list", "tuple")
+        waiting[:0] = named(target) if is_several else []
+        done += [] if is_several else [target]
+    return done
+
+
+def bound_by(node: Any) -> list[str]:
+    """The names that a node binds in any way, or parts of which it writes."""
+    match node.type:
+        case "assignment" | "augmented_assignment" | "for_statement":
+            return [re.match(r"\w*", text_of(target))[0] for target in list_targets(node)]  # type: ignore[index]
+        case "function_definition" | "class_definition":
+            return [text_of(field_of(node, "name"))]
+        case "parameters" | "lambda_parameters":
+            return [*map(name_parameter, named(node))]
+        case "import_statement" | "import_from_statement":
+            names = node.children_by_field_name("name")
+            return [text_of(field_of(name, "alias") or name).split(".")[0] for name in names]
+        case "named_expression" | "as_pattern_target" | "case_pattern" | "delete_statement":
+            return [*identifiers_in(node)]
+    return []
+
+
+def is_numeric(node: Any) -> bool:
+    """True for an import of numbers and their functions only, under the names by which they are known."""
+    module = field_of(node, "module_name")
+    return (
+        text_of(module) in MODULES
+        if module is not None
+        else all(
+            text_of(field_of(name, "name") or name) in NUMERIC or text_of(field_of(name, "alias") or name) not in NAMES
+            for name in node.children_by_field_name("name")
+        )
+    )
+
+
+def is_decorating(node: Any) -> bool:
+    """True for an import of a module with decorators that are known."""
+    names = [field_of(node, "module_name"), *node.children_by_field_name("name")]
+    return any(text_of(field_of(name, "name") or name) in DECORATING for name in names)
 
 
 def may_be_given(node: Any) -> bool:

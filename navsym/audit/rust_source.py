@@ -23,13 +23,14 @@ NUMBERS = dict.fromkeys("sin cos tan asin acos atan sinh cosh tanh exp sqrt atan
 }  # fmt: skip
 #: Methods that give what they are called on.
 SAME = ("clone", "as_ref", "to_owned", "into_inner", "quaternion", "as_vector", "copied", "eval", "coords")
-QUIET = "println eprintln debug_assert debug_assert_eq assert assert_eq trace debug info warn".split()
+QUIET = frozenset("println eprintln debug_assert debug_assert_eq assert assert_eq trace debug info warn".split())
 
 
 #: A text, and what may write in the arguments of a macro.
 STRING, WRITING = re.compile(r'"(\\.|[^"\\])*"'), re.compile(r"(?<![=!<>])=(?!=)|mut\b")
 ELSEWHERE, INSIDE = "which this file defines in another place", ("self", "Self", "crate", "super")
 OPEN = "which each type of a trait may define otherwise"
+DEFINING = ("struct_item", "enum_item", "union_item", "type_item", "macro_definition")
 SIGNS = ("", "+=", "-=", "*=", "/=", "%=")
 
 
@@ -58,7 +59,8 @@ class Reader(SourceReader):
     own, methods : the functions of the file, and those of a type
     places       : each with the modules around it and its type
     pointers     : references that the function being read declares
-    foreign      : names that ``use`` brings from elsewhere, or under another name
+    foreign      : names that ``use`` brings from elsewhere, or under another name, and numbers of templates
+    defined      : the types and macros of the file
     """
 
     HEAD = "const A: f64 = "
@@ -69,6 +71,7 @@ class Reader(SourceReader):
     places: set[tuple[str, tuple[str, ...], str]] = field(default_factory=set)
     pointers: set[str] = field(default_factory=set)
     foreign: set[str] = field(default_factory=set)
+    defined: set[str] = field(default_factory=set)
 
     @staticmethod
     def find_value(node: Any) -> Any:
@@ -90,6 +93,11 @@ class Reader(SourceReader):
                 self.unit.regions.setdefault(name, []).append(region)
             modules, owners = place_of(node)
             self.places.add((name, modules, owners[0] if owners else ""))
+        for node in nodes:
+            if node.type in DEFINING and text_of(field_of(node, "type")) not in ("f32", "f64"):
+                self.defined.add(text_of(field_of(node, "name")))
+            elif node.type == "const_parameter":
+                self.foreign.add(text_of(field_of(node, "name")))
         for node in (node for node in nodes if node.type == "use_declaration"):
             is_known = re.match(r"use\s+(std|core)::f(32|64)::consts\b", text_of(node)) is not None
             renamed = {text_of(field_of(n, "alias")) for n in descend(node) if n.type == "use_as_clause"}
@@ -98,14 +106,18 @@ class Reader(SourceReader):
             if node.type == "function_item":
                 self.read_function(node)
             elif node in constants and field_of(node, "value") is not None:
-                number, shape = type_of(text_of(field_of(node, "type")))
+                number, shape = self.type_of(text_of(field_of(node, "type")))
                 what = text_of(field_of(node, "name")), number, self.sizes(node, shape)
                 value = self.expression(field_of(node, "value"))
                 self.unit.constants.append(self.part("declare", node, *what, value, False))
             elif node.type == "field_declaration":  # of two structures that have it differently it stays unknown
-                name, known = f"self.{text_of(field_of(node, 'name'))}", type_of(text_of(field_of(node, "type")))
+                name, known = f"self.{text_of(field_of(node, 'name'))}", self.type_of(text_of(field_of(node, "type")))
                 self.unit.members[name] = known if self.unit.members.get(name, known) == known else ("other", None)
         self.unit.constants.sort(key=lambda statement: statement.span)
+
+    def type_of(self, text: str) -> tuple[str, tuple[int, ...] | None]:
+        """What a type holds; of one that the file defines nothing is known."""
+        return ("other", None) if {*re.findall(r"\w+", text)} & self.defined else type_of(text)
 
     def region_of(self, node: Any) -> tuple[int, int] | None:
         """The item itself where it is compiled under a condition, or the function around an inner one."""
@@ -123,7 +135,7 @@ class Reader(SourceReader):
         self.pointers = {text_of(field_of(n, "pattern")).removeprefix("mut ") for n in links}
         for child in [child for child in named(field_of(node, "parameters")) if child.type == "parameter"]:
             kind = text_of(field_of(child, "type"))
-            number, shape = type_of(kind)
+            number, shape = self.type_of(kind)
             label = text_of(field_of(child, "pattern")).removeprefix("mut ")
             number = "auto" if {*re.findall(r"\w+", kind)} & types and number == "real" else number
             arguments.append(Argument(label, number, self.sizes(child, shape), "&mut" in kind.replace(" ", "")))
@@ -181,7 +193,9 @@ class Reader(SourceReader):
                 return (self.ending(named(node)[0]) if named(node) else self.part("return", node, None),)
             case "call_expression":
                 return (self.part("do", node, self.expression(node)),)
-            case "macro_invocation" if text_of(field_of(node, "macro")) in QUIET and not WRITING.search(
+            case "unsafe_block":
+                return (self.part("jump", node, "an unsafe block", ()),)
+            case "macro_invocation" if text_of(field_of(node, "macro")) in QUIET - self.defined and not WRITING.search(
                 STRING.sub("", text_of(node))
             ):
                 return ()
@@ -194,7 +208,7 @@ class Reader(SourceReader):
         pattern, given, value = (field_of(node, key) for key in ("pattern", "type", "value"))
         if (other := field_of(node, "alternative")) is not None:
             return self.normalized_or_left(node, text_of(pattern), value, other)
-        number, shape = type_of(text_of(given)) if given is not None else ("auto", None)
+        number, shape = self.type_of(text_of(given)) if given is not None else ("auto", None)
         if pattern.type == "tuple_pattern" and value is not None and value.type == "tuple_expression":
             names = [text_of(child).removeprefix("mut ") for child in named(pattern)]
             pairs = [*zip(names, map(self.expression, named(value)), strict=False)]
@@ -267,7 +281,9 @@ class Reader(SourceReader):
                     "name", node, "M_PI" if re.fullmatch(r"((std|core)::)?(f32::|f64::)?consts::PI", name) else name
                 )
             case "reference_expression":
-                return self.expression(field_of(node, "value"))
+                value = self.expression(field_of(node, "value"))
+                is_written = any(child.type == "mutable_specifier" for child in node.children)
+                return self.part("address", node, value) if is_written else value
             case "unary_expression":
                 return self.operate_alone(node, text_of(node)[0].replace("*", "+"), named(node)[-1])  # *x is x here
             case "index_expression":
@@ -280,7 +296,7 @@ class Reader(SourceReader):
                 items = self.several(child for child in named(node) if size is None or child.id != size.id)
                 return self.part("list", node, items * times) if 0 < times <= 64 else None
             case "type_cast_expression":
-                number, _ = type_of(text_of(field_of(node, "type")))
+                number, _ = self.type_of(text_of(field_of(node, "type")))
                 return self.part("cast", node, number, self.expression(field_of(node, "value")))
             case "if_expression":
                 return self.choice(node)
@@ -315,13 +331,15 @@ class Reader(SourceReader):
             return self.refuse(node, f"{name}, {OPEN}")
         if not head or head == "Self":
             return arguments[0] if name in ("Ok", "Some") and arguments else self.part("call", node, last, arguments)
+        if {*head.split("::")} & self.defined:
+            return self.refuse(node, f"{name}, of a type of the file")
         if QUATERNION.fullmatch(head):
             return self.part("call", node, f"Quaternion::{last}", arguments)
         if last in ("convert", "from", "from_f64", "new_unchecked") and len(arguments) == 1:
             return self.part("call", node, "Convert::into", arguments)
         if last in ("zero", "one") and not arguments:
             return self.part("number", node, int(last == "one"), "auto")
-        if (shape := type_of(head)[1]) and last == "from_row_slice" and arguments and arguments[0].kind == "list":
+        if (shape := self.type_of(head)[1]) and last == "from_row_slice" and arguments and arguments[0].kind == "list":
             last, arguments = "new", arguments[0].parts[0]
         if shape and last == "new" and arguments:
             sides = (self.whole(node, n) for n in shape)

@@ -129,7 +129,8 @@ JUMPS = frozenset(
 WRITES = frozenset(
     "assignment_expression update_expression assignment augmented_assignment named_expression call_expression call "
     "function_call lambda_expression lambda compound_statement new_expression delete_expression ERROR "
-    "compound_assignment_expr macro_invocation closure_expression unsafe_block".split()
+    "compound_assignment_expr macro_invocation closure_expression unsafe_block mutable_specifier pointer_expression "
+    "raw".split()
 )
 
 
@@ -224,7 +225,8 @@ class SourceReader:
         """What most languages have, by its kinds in their grammars."""
         match node.type:
             case "true" | "false" | "boolean" | "boolean_literal":
-                return self.part("number", node, int(text_of(node).lower() == "true"), "int")
+                kind = "bool" if self.unit.language == "python" else "int"
+                return self.part("number", node, int(text_of(node).lower() == "true"), kind)
             case "identifier" | "field_identifier" | "qualified_identifier" | "this" | "self" | "end_keyword":
                 return self.part("name", node, text_of(node))
             case "list" | "tuple" | "expression_list" | "initializer_list" | "matrix" | "row":

@@ -31,6 +31,7 @@ LARGEST = 4096  # cells of one array
 TERMS = 2000  # of one sum
 LARGEST_INVERSE = 4
 CUT = "a real number cut to an integer"
+WRAP = "numbers of which C takes one below zero for a large one"
 #: Types of integers and what they hold; C counts with those of less than 32 bits as with "int".
 LIMITS = {
     "bool": (0, 1), "int8": (-(2**7), 2**7 - 1), "uint8": (0, 2**8 - 1), "int16": (-(2**15), 2**15 - 1),
@@ -131,6 +132,11 @@ Value = Scalar | Array | Unread
 def is_integer(cell: Cell) -> bool:
     """True for a cell that holds an integer of the source."""
     return isinstance(cell, Scalar) and cell.number in LIMITS
+
+
+def is_truth(value: object) -> bool:
+    """True for True and False of Python."""
+    return isinstance(value, Scalar) and value.number == "bool"
 
 
 def cells_of(value: Value) -> tuple[Cell, ...]:
@@ -425,10 +431,10 @@ def promote(kind: str) -> str:
 
 
 def does_fit(cell: Scalar, kind: str) -> bool:
-    """True for what a variable of a type of integers holds as it is; other numbers than constants fit in 32 bits."""
+    """True for what a variable of a type of integers holds as it is; others than constants fit in one of 32 bits."""
     exact, (low, high) = constant_of(cell), LIMITS[kind]
     if exact is None:
-        return cell.number in LIMITS and kind in ("int", "unsigned")
+        return cell.number in LIMITS and kind == promote(cell.number)
     return exact.denominator == 1 and low <= exact <= high
 
 
@@ -458,8 +464,21 @@ def convert(value: Value, number: str, line: int) -> Value:
 
 def combine(unit: Unit, sign: str, a: Value, b: Value) -> Value:
     """The arithmetic of a language."""
+    require_one_sign(a, b)
     result = operate(unit, sign, a, b)
     return require_fit(unit, result if sign != "-" else require_no_wrap(result))
+
+
+def is_natural(cell: Scalar) -> bool:
+    """True for a constant that is not below zero."""
+    return cell.tree.head == NUMBER and cell.tree.args[0] >= 0
+
+
+def require_one_sign(*values: Value) -> None:
+    """Refuse unsigned numbers beside one that may be below zero, which C takes for a large one."""
+    whole = [cell for value in values for cell in cells_of(value) if isinstance(cell, Scalar) and cell.number in LIMITS]
+    if any(cell.number == "unsigned" for cell in whole):
+        forbid(not all(cell.number == "unsigned" or is_natural(cell) for cell in whole), WRAP)
 
 
 def require_no_wrap(value: Value) -> Value:

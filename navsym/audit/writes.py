@@ -5,6 +5,8 @@ What is not read may write all names in it, and what has no name there. All else
 
 from __future__ import annotations
 
+import itertools
+import re
 from collections.abc import Container, Iterator
 from dataclasses import dataclass
 
@@ -77,7 +79,8 @@ def list_links(unit: Unit, part: Part) -> Iterator[tuple[str, set[str]]]:
 def sources_of(value: Part) -> set[str]:
     """The names that a value mentions, also where it is not read."""
     hidden = (part.parts[1] for part in walk(value) if part.kind == "refused" and len(part.parts) > 1)
-    return mentioned_in(value).union(*hidden)
+    names = mentioned_in(value).union(*hidden)
+    return names | {*map(head_of, names)}
 
 
 def written_alone(unit: Unit, part: Part, entries: Container[str], numbers: Container[str]) -> Writes:
@@ -88,9 +91,11 @@ def written_alone(unit: Unit, part: Part, entries: Container[str], numbers: Cont
             return Writes(frozenset(first.parts))
         case "assign" | "several":
             targets = (first,) if part.kind == "assign" else first
-            return Writes(changed=frozenset[str]().union(*(roots_of(unit, target, entries) for target in targets)))
+            changed = frozenset[str]().union(*(roots_of(unit, target, entries) for target in targets))
+            return Writes(changed=changed, others=any(name not in entries for name in owners_in(unit, *targets)))
         case "declare" | "for":
             is_link = part.kind == "declare" and part.parts[4] is True  # what is written there is written elsewhere
+            is_link |= part.kind == "declare" and unit.language == "cpp" and is_made(part)
             return Writes(frozenset([first]), frozenset(names_in(part) if is_link else ()))
         case "address":
             return Writes(changed=frozenset(mentioned_in(part)))
@@ -126,8 +131,21 @@ def written_by_call(unit: Unit, part: Part, entries: Container[str], numbers: Co
         touched = given_to.keys() if inside.others else {*map(head_of, inside.changed)} & given_to.keys()
         own = mentioned_in(*(given_to[n] for n in touched))
         outer = {n for n in inside.changed if head_of(n) not in given_to}
-        done, others = done | own | outer, others or inside.others or bool(outer)
+        others |= inside.others or bool(outer or owners_in(unit, *(given_to[n] for n in touched)))
+        done |= own | outer
     return Writes(changed=frozenset(done), others=others, leaves=name in unit.macros)
+
+
+def is_made(part: Part) -> bool:
+    """True for an object of a class that is not known, which is made of what it may write to."""
+    return part.parts[1] == "other" and part.parts[3] is not None and part.parts[3].kind == "list"
+
+
+def owners_in(unit: Unit, *parts: Part | str) -> set[str]:
+    """The functions of the file that parts call, also before a member: what they give may be another name."""
+    names = {*names_in(*parts), *(part for part in parts if isinstance(part, str))}
+    heads = (re.findall(r"(\w+)\(", name) for name in names)
+    return (called_in(*parts) | {*itertools.chain(*heads)}) & unit.functions.keys()
 
 
 def changed_in(unit: Unit, function: Function) -> Writes:
@@ -149,6 +167,7 @@ def own_names(unit: Unit, function: Function) -> frozenset[str]:
 def written_outside(unit: Unit, function: Function) -> Writes:
     """What a call of a function may write: of its parameters those that the caller sees, and what is not its own."""
     inside, shared = changed_in(unit, function), {a.name for a in function.arguments if a.shared}
+    shared |= {a.name for a in function.arguments if a.number == "other" and unit.language == "cpp"}  # such as Ref
     own = (own_names(unit, function) | {a.name for a in function.arguments}) - shared
     outside = frozenset(name for name in inside.changed if head_of(name) not in own)
     return Writes(changed=outside, others=inside.others)
