@@ -5,6 +5,7 @@ from __future__ import annotations
 import re
 from collections.abc import Callable
 from dataclasses import replace
+from functools import partial
 from typing import TYPE_CHECKING, Any
 
 from navsym.cli import audit as audit_verb
@@ -39,11 +40,15 @@ def register_magics(shell: Any) -> None:
         return refuse_shortly(prove_line, line)
 
     def claims(line: str, cell: str) -> Verdicts:
-        """Decide a cell of TOML, of a formula a line, or of LaTeX; ``%%claims name`` keeps the verdicts by a name."""
-        name = line.strip()
+        """Decide a cell of TOML, of a formula a line, or of LaTeX; ``%%claims name`` keeps the verdicts by a name.
+
+        ``%%claims --definitions`` takes ``K = ...`` in LaTeX, where K stands nowhere before, as a definition.
+        """
+        words = line.split()
+        name = " ".join(word for word in words if word != "--definitions")
         if name and not name.isidentifier():
             raise UsageError(f"syntax: %%claims: expected nothing or one name; got {quote(name)}; correct it")
-        verdicts = refuse_shortly(prove_cell, cell)
+        verdicts = refuse_shortly(partial(prove_cell, definitions="--definitions" in words), cell)
         if name:
             shell.push({name: verdicts})
         return verdicts
@@ -90,7 +95,7 @@ def prove_at(number: int, line: str) -> Verdict:
     return replace(verdict, formula=formula)
 
 
-def prove_cell(text: str) -> Verdicts:
+def prove_cell(text: str, definitions: bool = False) -> Verdicts:
     """The verdicts of a claim file in memory, of formulas one a line, or of LaTeX below its tables.
 
     Raises NavsymError for what is none of these.
@@ -106,11 +111,11 @@ def prove_cell(text: str) -> Verdicts:
         if not lines:
             raise EmptyError("expected a formula or [[claim]] blocks; got nothing; write one", where="cell")
         return Verdicts(tuple(prove_at(number, line) for number, line in lines))
-    text = read_cell(text, formulas.start()) if formulas else text
+    text = read_cell(text, formulas.start(), definitions) if formulas else text
     return decide_claims(claims_from(parse_toml(text, "cell"), "cell", go_on=True))
 
 
-def read_cell(text: str, start: int) -> str:
+def read_cell(text: str, start: int, definitions: bool) -> str:
     """The claim file of formulas in LaTeX, behind ``[symbols]`` and ``[latex]`` where these are given."""
     from navsym.language.latex.reading import read_with_reals
     from navsym.language.tomlfile import parse_toml
@@ -121,4 +126,4 @@ def read_cell(text: str, start: int) -> str:
     refused = next((formula for formula in reading.formulas if formula.status != "READ"), None)
     if refused is not None:
         raise ExpressionSyntaxError(str(refused.why), where="cell")
-    return reading.claims()
+    return reading.claims(definitions=definitions)

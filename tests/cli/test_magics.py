@@ -49,6 +49,13 @@ def test_a_cell_of_claims_is_decided_and_kept_by_its_name(shell):
     assert prove_cell(CELL).document() == verdicts.document()
 
 
+def test_a_cell_of_latex_may_define_its_names(shell):
+    cell = r"$K = \frac{P}{P + R}$, so that $(1 - K)^2 P + K^2 R = (1 - K) P$"
+    (verdict,) = shell.run_cell_magic("claims", "--definitions mine", cell)
+    assert verdict.status == "PROVED" and shell.user_ns["mine"][0] is verdict
+    assert [v.status for v in shell.run_cell_magic("claims", "", cell)] == ["REFUTED", "REFUTED"]
+
+
 @pytest.mark.parametrize("line", ["--range x=0,1", "not a name"])
 def test_a_cell_of_claims_refuses_what_is_no_name(shell, line):
     with pytest.raises(UsageError, match="expected nothing or one name"):
