@@ -8,7 +8,7 @@ from __future__ import annotations
 import os
 import re
 import unicodedata
-from collections.abc import Collection, Iterable, Mapping
+from collections.abc import Collection, Iterable, Iterator, Mapping
 from pathlib import Path
 from typing import Any
 
@@ -142,3 +142,19 @@ def describe_unknown(key: object, known: Collection[str]) -> str:
         f"expected one of the keys {', '.join(known)}; got {quote(key)}; "
         f"remove or correct it: {suggest_nearest(str(key), known)}"
     )
+
+
+def list_calls(text: str, names: str) -> Iterator[list[str]]:
+    """The arguments of each call of some functions in a text, split at the commas outside of brackets.
+
+    >>> list(list_calls("sum(f(k, 2), k, 1, n) + x", "sum|product"))
+    [['f(k, 2)', ' k', ' 1', ' n']]
+    """
+    for call in re.finditer(rf"\b(?:{names})\s*\(", text):
+        depth, pieces = 0, [""]
+        for letter in text[call.end() :]:
+            depth += (letter in "([") - (letter in ")]")
+            if depth < 0:
+                break
+            pieces = [*pieces, ""] if letter == "," and not depth else [*pieces[:-1], pieces[-1] + letter]
+        yield pieces

@@ -13,7 +13,7 @@ from navsym.claims import Bound, Equation, Statement, Verdict, Verdicts
 from navsym.claims.formula import names_of, side_text
 from navsym.core.errors import DomainError, ExpressionSyntaxError, UnknownSymbolError
 from navsym.core.sandbox import require_jobs, require_limits
-from navsym.language.names import RESERVED, quote, require_table, suggest_nearest
+from navsym.language.names import RESERVED, list_calls, quote, require_table, suggest_nearest
 from navsym.language.tomlfile import read_toml
 
 if TYPE_CHECKING:
@@ -244,13 +244,7 @@ def read_formula(sides: Sides, given: Mapping[str, Any], beside: Mapping[str, An
 
 def list_ends(text: str) -> Iterator[str]:
     """The names that end sums and products, as ``n`` and ``n - 1``: they count, and without a declaration from 1."""
-    for call in re.finditer(r"\b(?:sum|product)\s*\(", text):
-        depth, pieces = 0, [""]
-        for letter in text[call.end() :]:
-            depth += (letter in "([") - (letter in ")]")
-            if depth < 0:
-                break
-            pieces = [*pieces, ""] if letter == "," and not depth else [*pieces[:-1], pieces[-1] + letter]
+    for pieces in list_calls(text, "sum|product"):
         yield from (end[1] for end in map(END.fullmatch, pieces[2:4]) if end)
 
 

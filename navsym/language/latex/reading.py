@@ -21,7 +21,7 @@ from navsym.language.latex.meaning import explain, fit_sides, list_columns, take
 from navsym.language.latex.notation import Notation, build_notation, read_notation
 from navsym.language.latex.parts import Part, Refusal, list_names, list_unknown
 from navsym.language.latex.rows import Relation, Side, split_relations
-from navsym.language.names import NAME, RESERVED, quote
+from navsym.language.names import NAME, RESERVED, list_calls, quote
 from navsym.language.tomlfile import toml_text
 
 SIZE = 4_000_000  # bytes of a document
@@ -168,10 +168,12 @@ class Reading(Answer):
     def insert_definitions(self) -> tuple[ReadFormula, ...]:
         """The formulas without the definitions, ``name = value`` of a name that is new, with the value for the name.
 
-        A name with a value in itself, with a rate, or with an index somewhere, is none that is defined.
+        A name with a value in itself, with a rate, with an index somewhere, or of a variable, is none that is defined.
         """
         values: dict[str, str] = {}
         seen, claims = set(self.notation.rates), []
+        calls = (pieces for one in self.read for pieces in list_calls(one.text, "diff|integral|sum|product|limit"))
+        seen |= {pieces[1].strip() for pieces in calls if len(pieces) > 1}
         for formula in self.read:
             name, sides = str(formula.left), [str(formula.left), str(formula.right)]
             is_new = name in formula.symbols and name not in seen and not re.search(rf"\b{name}\b", sides[1])

@@ -394,6 +394,7 @@ def test_definitions_are_written_for_their_names_in_the_claims_behind_them(tmp_p
         ("$v = u + u$, $v_1 = 2 u_1$", 2),  # an entry of it is used
         (r"$x \le y$, $y = z$", 2),
         (r"$\dot x = y$, $x = z$, $z = y$", 3),  # x has a rate
+        (r"$z = y$, $\frac{dy^2}{dz} = y$", 2),  # z is a variable
     ],
 )
 def test_what_only_looks_like_a_definition_stays_a_claim(latex, claims):
