@@ -13,8 +13,9 @@ from navsym.claims import Bound, Equation, Statement, Verdict, Verdicts
 from navsym.claims.formula import names_of, side_text
 from navsym.core.errors import DomainError, ExpressionSyntaxError, UnknownSymbolError
 from navsym.core.sandbox import require_jobs, require_limits
+from navsym.language.files import name_file
 from navsym.language.names import RESERVED, list_calls, quote, require_table, suggest_nearest
-from navsym.language.tomlfile import read_toml
+from navsym.language.tomlfile import parse_toml, read_toml
 
 if TYPE_CHECKING:
     from navsym.prove.claimfile import ClaimFile
@@ -73,7 +74,8 @@ def prove(
 
     statement : a formula as text, ``"sin(2*a) = 2*sin(a)*cos(a)"``, a chain of them, ``"a <= b = c"``, or in LaTeX
                 (with a backslash); or its left side, followed by ``relation`` and ``right``; or the path of a
-                claim file (TOML). A side is text, an exact number, a sympy expression, or rows or a matrix of these.
+                claim file (TOML), or its text. A side is text, an exact number, a sympy expression, or rows or a matrix
+                of these.
     relation  : one of ``= != < <= > >=``
     symbols   : declarations: ``T=("0", "2*pi")`` for a closed range, ``"real"``, ``"positive"``, ``"nonnegative"``,
                 ``"nonzero"``, or a table such as ``u={"vector": 3}``; without one real, or as sympy assumes, and where
@@ -175,12 +177,14 @@ def choose_order(printed: tuple[str, int] | None, order: Mapping[str, int] | Non
 
 
 def prove_file(path: str | os.PathLike[str], seconds: float, jobs: int, progress: Progress | None) -> Verdicts:
-    """The verdicts of a claim file."""
-    read_toml(path)  # a file that is none is refused before the slow import of the algebra
+    """The verdicts of a claim file, or of its text."""
+    text = is_claim_text(path)
+    document = parse_toml(str(path), "prove") if text else read_toml(path)  # refused before the algebra is imported
 
-    from navsym.prove.claimfile import decide_claims, read_claims
+    from navsym.prove.claimfile import claims_from, decide_claims
 
-    return decide_claims(read_claims(path, go_on=True), jobs=jobs, seconds=seconds, progress=progress)
+    claims = claims_from(document, "prove" if text else name_file(path), go_on=True)
+    return decide_claims(claims, jobs=jobs, seconds=seconds, progress=progress)
 
 
 def prove_formula(sides: Sides, given: Mapping[str, Any], beside: Mapping[str, Any], seconds: float) -> Verdict:
@@ -269,9 +273,15 @@ def read_options(box: Any, rates: Any, order: Any, seconds: Any, jobs: Any) -> d
     return {key: require_table(table, f"prove: {key}") for key, table in tables.items()}
 
 
+def is_claim_text(statement: Any) -> bool:
+    """True for the text of a claim file."""
+    return isinstance(statement, str) and "[[claim]]" in statement
+
+
 def is_file(statement: Any) -> bool:
-    """True for a path, and for text that ends like a claim file."""
-    return isinstance(statement, os.PathLike) or (isinstance(statement, str) and statement.endswith(".toml"))
+    """True for a path, for text that ends like a claim file, and for the text of one."""
+    is_path = isinstance(statement, os.PathLike) or (isinstance(statement, str) and statement.endswith(".toml"))
+    return is_path or is_claim_text(statement)
 
 
 def refuse_declarations(names: Mapping[str, Any]) -> None:

@@ -250,6 +250,15 @@ def test_a_counterexample_has_short_numbers_where_they_do():
     assert nav.prove("x**2 != 2", x=("7/5", "3/2")).counterexample == {"x": "sqrt(2)"}
 
 
+def test_the_text_of_a_claim_file_is_decided_as_the_file_is():
+    text = Path(EXAMPLE).read_text(encoding="utf-8")
+    of_text, of_file = nav.prove(text), nav.prove(EXAMPLE)
+    assert [(v.id, v.status) for v in of_text] == [(v.id, v.status) for v in of_file]
+    with pytest.raises(nav.NavsymError, match="expected TOML") as caught:
+        nav.prove("[[claim]] x")
+    assert caught.value.where == "prove: line 1, column 11"
+
+
 def test_verdicts_are_taken_by_place_id_and_slice():
     verdicts = nav.prove(EXAMPLE)
     first, *rest = verdicts
