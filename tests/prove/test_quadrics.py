@@ -49,3 +49,10 @@ def test_squares_are_those_of_the_matrix_and_none_of_an_indefinite_one(seed):
     assert again == matrix
     matrix[-1][-1] -= fmpq(Fraction(1, 7).numerator, 7) + sum(r[-1] ** 2 for r in rows)
     assert split_squares(matrix) is None
+
+
+def test_a_square_holds_beside_hypotheses_on_roots_that_it_does_not_need():
+    given = ["v = u + 2*a", "u = sqrt(a**2 + 1)"]
+    assert nav.prove("v**2 + b**2 >= 2*v*b", given=given).status == nav.PROVED
+    false = nav.prove("v**2 + b**2 >= 2*v*b + 1/100", given=given)
+    assert false.status == nav.REFUTED and false.counterexample["u"] == "sqrt(185)/4" and false.check()

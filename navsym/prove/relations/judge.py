@@ -182,7 +182,8 @@ def evaluate_point(case: Any, point: Mapping[str, Any]) -> dict[str, Any]:
 def refute(claim: TextClaim, document: Document, point: Mapping[str, Any]) -> Verdict:
     """REFUTED at a point, when the checker grants it."""
     written = write_point(point)
-    shown = {claim.shown.get(n, n): written[n] if isinstance(v, tuple) else str(v) for n, v in point.items()}
+    values = {n: expression_text(to_sympy(v)) if isinstance(v, tuple) else str(v) for n, v in point.items()}
+    shown = {claim.shown.get(name, name): value for name, value in values.items()}
     verdict = Verdict(REFUTED, "exact point, ball arithmetic", "one point", (), "", shown)
     try:
         certificate = refute_document(claim.documents, document, written)

@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Iterator, Sequence
 from fractions import Fraction
 from functools import lru_cache
+from itertools import chain
 from typing import Any
 
 from flint import Ordering, arb, fmpq, fmpq_mpoly, fmpq_mpoly_ctx
@@ -37,16 +38,24 @@ def by_quadrics(goal: Any, sample: list[arb]) -> Iterator[Proof]:
 def find_sum(
     term: Term, zeros: tuple[Term, ...], given: tuple[Term, ...]
 ) -> tuple[str, list[str], list[Proof | None]] | None:
-    """The sum as text, the cofactors of ``zeros``, and a proof for each of its terms; None for that of a square."""
-    parts = [*dict.fromkeys(g for t in (term, *zeros, *given) for g in player.list_generators(t))]
-    if not all(part[0] == "symbol" for part in parts) or len(parts) > MOST_SYMBOLS:
+    """The sum as text, the cofactors of ``zeros``, and a proof for each of its terms; None for that of a square.
+
+    Hypotheses on roots and other functions are not used.
+    """
+    plain = {t for t in (term, *zeros, *given) if all(g[0] == "symbol" for g in player.list_generators(t))}
+    parts = [*dict.fromkeys(g for t in (term, *zeros, *given) if t in plain for g in player.list_generators(t))]
+    if term not in plain or len(parts) > MOST_SYMBOLS:
         return None
     ring = fmpq_mpoly_ctx.get([f"x{k}" for k in range(len(parts))], Ordering.degrevlex)
     generators = dict(zip(parts, ring.gens(), strict=True))
-    target, *others = [read_quadric(t, generators, ring, len(parts)) for t in (term, *zeros, *given)]
-    if target is None or len(others) > MOST_HYPOTHESES or all(rows is None for rows in others):
+    target, *others = [
+        read_quadric(t, generators, ring, len(parts)) if t in plain else None for t in (term, *zeros, *given)
+    ]
+    if target is None or len(others) > MOST_HYPOTHESES:
         return None
-    for shares, weights in list_multipliers(target, others, len(zeros)):
+    without = ([fmpq(0)] * len(zeros), [fmpq(0)] * len(given))
+    used = list_multipliers(target, others, len(zeros)) if any(rows is not None for rows in others) else ()
+    for shares, weights in chain((without,), used):
         squares = split_squares(combine(target, others, [-s for s in (*shares, *weights)]))
         if squares is None:
             continue
