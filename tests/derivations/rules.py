@@ -111,10 +111,15 @@ def certificates_that_lack_without_a_reason(judged: Judged) -> list[str]:
 
 
 def statements_of(tree: ast.Module) -> list[tuple[int, list[ast.expr]]]:
-    """The printed and the derived side of every statement of a file, with its line."""
+    """The printed and the derived side of every statement of a file, with its line.
+
+    A fact that says its meaning in formulas is decided by these.
+    """
     found = []
     for node in ast.walk(tree):
         if isinstance(node, ast.Call) and ast.unparse(node.func) in ("Equation", "Property", "fact"):
+            if any(word.arg == "meaning" for word in node.keywords):
+                continue
             named = [word.value for word in node.keywords if word.arg in ("printed", "derived")]
             found.append((node.lineno, [*node.args, *named][:2]))
         elif isinstance(node, ast.Yield) and isinstance(node.value, ast.Tuple):
