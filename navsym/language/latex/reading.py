@@ -160,7 +160,8 @@ class Reading(Answer):
                 symbols[safe] = "real"
                 if re.fullmatch(r"[A-Za-z]{2,}|\\mathbf\{[A-Za-z]{2,}\}", spelled):
                     questions += f"# Is {spelled} a product or a name? For a product, declare its letters.\n"
-                if plain_spelling(spelled) != safe:
+                plain = re.sub(r"\\(mathbf|boldsymbol|bm|mathrm|text|operatorname)\b", "", spelled)
+                if re.sub(r"[\\{}\s]", "", plain) != safe:  # the name that LaTeX means without a table
                     latex[safe] = spelled
         rates = dict(self.notation.rates)
         head = "# Declare each name: real, positive, a range, { vector = 3 }, { matrix = [3, 3] } and so on.\n"
@@ -369,7 +370,10 @@ def read_sides(
         raise Refusal(relation.left.start, "one type for a name", question, r"write \mathbf in [latex]")
     for side, part in zip((relation.left, relation.right), parts, strict=True):
         with shifted(side.start):
-            compare_readings(part, side.text, notation)
+            if climb(side.text, notation) != part:
+                raise Refusal(
+                    part.at, "two readings that agree", "two that differ", "write it in parts, with parentheses"
+                )
     used = dict.fromkeys(name for part in parts for name in list_names(part) if name in notation)
     with shifted(relation.right.start):
         parts[1], order = take_order(parts[1])
@@ -402,15 +406,3 @@ class shifted:
     def __exit__(self, kind: Any, error: BaseException | None, trace: Any) -> None:
         if isinstance(error, Refusal):
             error.at += self.start
-
-
-def compare_readings(part: Part, text: str, notation: Notation) -> None:
-    """Refuse what the second reader takes differently, or not at all."""
-    other = climb(text, notation)
-    if other != part:
-        raise Refusal(part.at, "two readings that agree", "two that differ", "write it in parts, with parentheses")
-
-
-def plain_spelling(spelled: str) -> str:
-    """The name that LaTeX means without a table."""
-    return re.sub(r"[\\{}\s]", "", re.sub(r"\\(mathbf|boldsymbol|bm|mathrm|text|operatorname)\b", "", spelled))
