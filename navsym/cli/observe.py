@@ -100,13 +100,8 @@ def overview(data: Mapping[str, Any]) -> str:
         lines.append(f"redundant: {', '.join(data['redundant'])}\n")
     if not data["proved"]:
         lines.append("the rank is proved from below only: no unobservable directions were found\n")
-    return "\n".join([*lines, *pieces_text(data["pieces"], data["n"])])
-
-
-def pieces_text(pieces: Sequence[Mapping[str, Any]], n: int) -> list[str]:
-    """The rank of each piece by itself."""
-    rows = [[piece["from"], piece["to"], f"{piece['joint_dimension']} of {n}"] for piece in pieces]
-    return [table(["piece from", "to", "observes alone"], rows)] if rows else []
+    rows = [[piece["from"], piece["to"], f"{piece['joint_dimension']} of {data['n']}"] for piece in data["pieces"]]
+    return "\n".join([*lines, *([table(["piece from", "to", "observes alone"], rows)] if rows else [])])
 
 
 def drops_text(data: Mapping[str, Any]) -> str:

@@ -246,7 +246,7 @@ def append_claim(source: str, new: NewClaim) -> str:
         title=write_docstring(new.title),
         printed=side_source(sides[0]),
         derived=side_source(sides[1]),
-        tolerance=tolerance_source(new.tolerance),
+        tolerance="" if new.tolerance is None else f"        tolerance={side_source(read_tolerance(new.tolerance))},\n",
     )
     names = used - names_at_top(tree)
     declared = write_declarations("real", names - new.positive) + write_declarations("positive", names & new.positive)
@@ -301,11 +301,6 @@ def write_declarations(kind: str, names: set[str]) -> str:
     ordered = sorted(names)
     made = f'sp.Symbol("{ordered[0]}"' if len(ordered) == 1 else f'sp.symbols("{" ".join(ordered)}"'
     return f"\n\n{', '.join(ordered)} = {made}, {kind}=True)\n"
-
-
-def tolerance_source(text: str | None) -> str:
-    """The line that gives a claim its tolerance, empty without one; raises the errors of reading it."""
-    return "" if text is None else f"        tolerance={side_source(read_tolerance(text))},\n"
 
 
 def read_tolerance(text: str) -> sp.Rational:

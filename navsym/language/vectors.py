@@ -19,7 +19,7 @@ from navsym.language.expression import LENGTH, Reader
 from navsym.language.names import FUNCTIONS, RESERVED, quote
 from navsym.language.printer import LOOSE, RAISED, TIGHT, WHOLE, LatexWriter, Text
 from navsym.language.tokens import Source, split_tokens
-from navsym.language.tree import MINUS_ONE, NUMBER, POWER, PRODUCT, SUM, SYMBOL, Tree, build, fold_tree
+from navsym.language.tree import MINUS_ONE, NUMBER, POWER, PRODUCT, SUM, SYMBOL, Tree, build, build_number, fold_tree
 
 Size = tuple[Any, Any] | None  # rows and columns, whole numbers or names of dimensions; None for a number
 
@@ -240,7 +240,7 @@ class ValueReader(Reader):
         if any(p > end for p, end in zip(places, ends, strict=True)):
             got = f"[{', '.join(map(str, places))}] of {describe_size(size)}"
             self.fail(at, "an index up to the last entry, counted from 1", got, "correct it", ShapeError)
-        part = build("index", (value, *(build_count(p) for p in places)))
+        part = build("index", (value, *map(build_number, places)))
         self.places.setdefault(part, at)
         return part
 
@@ -388,12 +388,6 @@ class ValueReader(Reader):
         if sizes[0] is not None and self.tokens[at] != "=":
             self.refuse_shapes(at, f"numbers beside {self.tokens[at]}", sizes, "compare entries")
         return part
-
-
-def build_count(n: int) -> Tree:
-    from navsym.language.tree import build_number
-
-    return build_number(n)
 
 
 def is_count(tree: Tree, most: int = 64) -> bool:

@@ -234,14 +234,9 @@ def read_claim(block: Any, symbols: Symbols, where: str) -> FileClaim | TextClai
     return FileClaim(symbols.formula(table), left, right, relation, box, tolerance, names, *noted, notes=notes)
 
 
-def read_status(value: Any, where: str) -> str:
-    """The word of a verdict."""
-    return one_of(as_text(value, where, "a verdict"), tuple(Status), where)
-
-
 #: What a claim may say about itself beside its formula; ``printed`` and ``source`` as ``read`` writes them.
 NOTES: Mapping[str, Callable[[Any, str], str]] = {
-    "expect": read_status,
+    "expect": lambda value, where: one_of(as_text(value, where, "a verdict"), tuple(Status), where),
     "title": as_title,
     "corrects": as_label,
     "reason": as_title,
@@ -365,13 +360,9 @@ def complete_verdict(claim: FileClaim, verdict: Verdict) -> Verdict:
     if verdict.status == REFUTED:
         return verdict
     assumptions = dict.fromkeys((*verdict.assumptions, *text_conditions(claim)))
-    return replace(verdict, scope=scope_of_text(claim), assumptions=tuple(assumptions))
-
-
-def scope_of_text(claim: FileClaim) -> str:
-    """All symbols of the text, also those that the algebra has cancelled since, as in a/a = 1."""
     sides = [tuple(side) if isinstance(side, sp.MatrixBase) else side for side in (claim.left, claim.right)]
-    return scope_of(sp.Tuple(*sides, *claim.divisors, *claim.radicands, *claim.arguments), claim.box)
+    parts = sp.Tuple(*sides, *claim.divisors, *claim.radicands, *claim.arguments)  # all symbols of the text, as in a/a
+    return replace(verdict, scope=scope_of(parts, claim.box), assumptions=tuple(assumptions))
 
 
 def text_conditions(claim: FileClaim) -> list[str]:

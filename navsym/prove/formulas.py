@@ -111,8 +111,16 @@ def prove(
     beside = dict(tolerance=tolerance, exists=exists, given=given) | read_options(box, rates, order, seconds, jobs)
     if relation is None and is_file(statement):
         refuse_declarations(symbols or {name: value for name, value in beside.items() if value not in (None, {}, ())})
-        return prove_file(statement, seconds, jobs, progress)
-    return prove_formula(split_formula(statement, relation, right, symbols), symbols, beside, seconds)
+        text = is_claim_text(statement)
+        document = parse_toml(statement, "prove") if text else read_toml(statement)  # before the slow import of algebra
+        from navsym.prove.claimfile import claims_from, decide_claims
+
+        claims = claims_from(document, "prove" if text else name_file(statement), go_on=True)
+        return decide_claims(claims, jobs=jobs, seconds=seconds, progress=progress)
+    sides = split_formula(statement, relation, right, symbols)
+    from navsym.prove.claimfile import decide_claims
+
+    return decide_claims(read_formula(sides, symbols, beside), seconds=seconds)[0]
 
 
 def state_formula(
@@ -174,24 +182,6 @@ def choose_order(printed: tuple[str, int] | None, order: Mapping[str, int] | Non
         message = "expected one order; got O(...) in the formula and order= beside it; remove one of them"
         raise DomainError(message, where="prove: order")
     return dict([printed])
-
-
-def prove_file(path: str | os.PathLike[str], seconds: float, jobs: int, progress: Progress | None) -> Verdicts:
-    """The verdicts of a claim file, or of its text."""
-    text = is_claim_text(path)
-    document = parse_toml(str(path), "prove") if text else read_toml(path)  # refused before the algebra is imported
-
-    from navsym.prove.claimfile import claims_from, decide_claims
-
-    claims = claims_from(document, "prove" if text else name_file(path), go_on=True)
-    return decide_claims(claims, jobs=jobs, seconds=seconds, progress=progress)
-
-
-def prove_formula(sides: Sides, given: Mapping[str, Any], beside: Mapping[str, Any], seconds: float) -> Verdict:
-    """The verdict of one formula."""
-    from navsym.prove.claimfile import decide_claims
-
-    return decide_claims(read_formula(sides, given, beside), seconds=seconds)[0]
 
 
 def read_formula(sides: Sides, given: Mapping[str, Any], beside: Mapping[str, Any]) -> ClaimFile:
@@ -301,7 +291,8 @@ def split_formula(statement: Any, relation: str | None, right: Any, given: Mappi
         expected = "a formula as text, or two sides with their relation between them"
         message = f'expected {expected}; got {quote(statement)}; write prove(left, "=", right)'
         raise ExpressionSyntaxError(message, where="prove: statement")
-    marks = [mark for mark in RELATION.finditer(statement) if is_outside_brackets(statement, mark.start())]
+    fronts = [(mark, statement[: mark.start()].count) for mark in RELATION.finditer(statement)]
+    marks = [mark for mark, count in fronts if sum(map(count, "([")) <= sum(map(count, ")]"))]  # outside brackets
     if not marks:
         message = f"expected a relation = != < <= > >= or a file.toml; got {quote(statement)}; write both sides"
         raise ExpressionSyntaxError(message, where="prove: statement")
@@ -309,12 +300,6 @@ def split_formula(statement: Any, relation: str | None, right: Any, given: Mappi
         return Sides("", "", "", statement)
     (mark,) = marks
     return Sides(statement[: mark.start()].strip(), mark[0], statement[mark.end() :].strip())
-
-
-def is_outside_brackets(text: str, at: int) -> bool:
-    """Whether a place of a text lies in no parentheses and brackets."""
-    before = text[:at]
-    return sum(map(before.count, "([")) <= sum(map(before.count, ")]"))
 
 
 def read_latex_side(side: Any, given: Mapping[str, Any]) -> Any:

@@ -193,7 +193,9 @@ def grant_verdict(statement: Statement, verdict: Verdict, seconds: float = SECON
         return leave_unchecked(verdict, statement.unsaid if isinstance(statement, Property) else apart)
     try:
         if isinstance(statement, Property) and verdict.certificate:
-            return grant_finding(documents, verdict)
+            answer = grant(documents, verdict.certificate or {})
+            holds = (answer == "HOLDS") == verdict.status.holds
+            return verdict if holds else withdraw(verdict, f"the statement {answer}")
         if verdict.status == REFUTED:
             return grant_refutation(documents, verdict)
         return grant_proofs(documents, verdict, seconds)
@@ -218,12 +220,6 @@ def withdraw(verdict: Verdict, why: str) -> Verdict:
 def grant(documents: Sequence[Document], certificate: Mapping[str, Any]) -> str:
     """HOLDS or FAILS by the checker, of what has been written down and read again; raises Refused."""
     return checker.grant(list(documents), checker.load(json.dumps(certificate)))
-
-
-def grant_finding(documents: Sequence[Document], verdict: Verdict) -> Verdict:
-    """The verdict of a fact that was found with its certificate, when that is what the checker grants."""
-    answer = grant(documents, verdict.certificate or {})
-    return verdict if (answer == "HOLDS") == verdict.status.holds else withdraw(verdict, f"the statement {answer}")
 
 
 def grant_refutation(documents: Sequence[Document], verdict: Verdict) -> Verdict:

@@ -272,18 +272,16 @@ class Descent(SymbolReader):
         factors: list[Any] = []
         if following is not None and following.kind == "sym" and following.value.isdigit():
             factors = [self.number()]
-            noad_behind = self.noad
-            if self.ends() or noad_behind is None or factors[0].head == "frac" or not self.starts_name(noad_behind):
+            behind = self.noad  # in \sin 2x a name
+            named = behind is not None and (self.base(behind) is not None and behind.value not in CALLS)
+            named |= behind is not None and (behind.is_command("pi") or behind.kind == "arg")
+            if self.ends() or factors[0].head == "frac" or not named:
                 return Part("call", (name, power, False, factors[0]), noad.at)
             factors.append("")
         if following is None or self.ends():
             self.refuse(f"what {name} is taken of", "write it in parentheses")
         factors.append(self.factor())
         return Part("call", (name, power, False, join_factors(factors)), noad.at)
-
-    def starts_name(self, noad: Noad) -> bool:
-        r"""True for a name, behind the number in ``\sin 2x``."""
-        return (self.base(noad) is not None and noad.value not in CALLS) or noad.is_command("pi") or noad.kind == "arg"
 
     def arguments(self, opening: Noad) -> list[Part]:
         """Expressions in parentheses with commas between them."""

@@ -287,7 +287,8 @@ class Builder:
         if name in WORDS and given:
             word = self.text[given[0].pos : given[0].pos + given[0].len].strip("{} ")
             return [Noad("word", word, at, end, bold)]
-        args = tuple(self.build_argument(arg, bold or name in BOLD) for arg in given)
+        inner = [arg.nodelist if type(arg).__name__ == "LatexGroupNode" else [arg] for arg in given]
+        args = tuple(self.build(nodes, bold or name in BOLD) for nodes in inner)  # in braces, or one symbol
         if name in BOLD:
             return [Noad("group", None, at, end, True, args)]
         return [
@@ -300,11 +301,6 @@ class Builder:
                 args,
             )
         ]
-
-    def build_argument(self, node: Any, bold: bool) -> list[Noad]:
-        """What stands in the braces of an argument, or its one symbol."""
-        grouped = type(node).__name__ == "LatexGroupNode"
-        return self.build(node.nodelist if grouped else [node], bold)
 
     def make_environment(self, node: Any, at: int, end: int) -> Noad:
         """A matrix: its entries as lists, and the length of each row as its value."""

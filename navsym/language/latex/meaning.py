@@ -129,14 +129,14 @@ class Explainer:
     def __init__(self, notation: Notation) -> None:
         self.notation = notation
         self.methods = {
-            "+": self.explain_sum, "*": self.explain_product, "^": self.explain_power, "()": self.explain_group,
+            "+": self.explain_sum, "*": self.explain_product, "^": self.explain_power,
             "frac": self.explain_fraction, "-": self.explain_minus, "sqrt": self.explain_root,
             "abs": self.explain_length, "norm": self.explain_length, "floor": self.explain_floor,
             "call": self.explain_call, "matrix": self.explain_matrix, "skew": self.explain_skew,
             "dot": self.explain_dot, "diff": self.explain_derivative, "integral": self.explain_integral,
             "sum": self.explain_series, "num": self.explain_number, "name": self.explain_name,
             "limit": self.explain_limit, "inner": self.explain_inner, "cases": self.explain_cases,
-            "list": self.explain_list,
+            "list": self.explain_list, "()": lambda part: self.explain(part.args[1]),
         }  # fmt: skip
 
     def explain(self, part: Part) -> Term:
@@ -168,9 +168,6 @@ class Explainer:
         (name,) = part.args
         quaternion = self.notation.quaternions.get(name)
         return Term(name, WHOLE, self.notation.shapes.get(name, SCALAR), "", quaternion is not None, bool(quaternion))
-
-    def explain_group(self, part: Part) -> Term:
-        return self.explain(part.args[1])
 
     def explain_minus(self, part: Part) -> Term:
         term = self.explain(part.args[0])

@@ -209,7 +209,8 @@ class Reading(Answer):
                     symbols[safe] = {"matrix": ["?", "?"]} if is_matrix else {"vector": "?"}
                 if re.fullmatch(r"[A-Za-z]{2,}|\\mathbf\{[A-Za-z]{2,}\}", spelled):
                     questions += f"# Is {spelled} a product or a name? For a product, declare its letters.\n"
-                if plain_spelling(spelled) != safe:
+                plain = re.sub(r"\\(mathbf|boldsymbol|bm|mathrm|text|operatorname)\b", "", spelled)
+                if re.sub(r"[\\{}\s]", "", plain) != safe:  # the name that LaTeX means without a table
                     latex[safe] = spelled
         if "e" not in symbols and any(EXPONENT.search(formula.latex) for formula in self.formulas):
             questions += "# e in e^2 is Euler's number; declare e where it is a name, such as an eccentricity.\n"
@@ -423,7 +424,10 @@ def read_sides(
         raise Refusal(relation.left.start, "one type for a name", question, r"write \mathbf in [latex]")
     for side, part in zip((relation.left, relation.right), parts, strict=True):
         with shifted(side.start):
-            compare_readings(part, side.text, notation)
+            if climb(side.text, notation) != part:
+                raise Refusal(
+                    part.at, "two readings that agree", "two that differ", "write it in parts, with parentheses"
+                )
     used = dict.fromkeys(name for part in parts for name in list_names(part) if name in notation)
     with shifted(relation.right.start):
         parts[1], order = take_order(parts[1])
@@ -456,15 +460,3 @@ class shifted:
     def __exit__(self, kind: Any, error: BaseException | None, trace: Any) -> None:
         if isinstance(error, Refusal):
             error.at += self.start
-
-
-def compare_readings(part: Part, text: str, notation: Notation) -> None:
-    """Refuse what the second reader takes differently, or not at all."""
-    other = climb(text, notation)
-    if other != part:
-        raise Refusal(part.at, "two readings that agree", "two that differ", "write it in parts, with parentheses")
-
-
-def plain_spelling(spelled: str) -> str:
-    """The name that LaTeX means without a table."""
-    return re.sub(r"[\\{}\s]", "", re.sub(r"\\(mathbf|boldsymbol|bm|mathrm|text|operatorname)\b", "", spelled))

@@ -25,7 +25,12 @@ class SymbolReader:
         self.place, self.integrals = 0, 0
         self.bars: list[str] = []
         spelled = [(name, list_spelling(latex)) for name, latex in notation.spellings]
-        self.spelled = sorted(spelled, key=lambda pair: spelling_rank(pair[1]), reverse=True)
+        shapes = {
+            name: sum(n.bold + (n.sub is not None) + (n.sup is not None) for n in found) for name, found in spelled
+        }
+        self.spelled = sorted(
+            spelled, key=lambda pair: (len(pair[1]), shapes[pair[0]]), reverse=True
+        )  # longer ones first
 
     def start(self, noads: list[Noad]) -> Self:
         """A reader of a list of its own: the argument of a command."""
@@ -362,11 +367,6 @@ def split_noads(noads: list[Noad], mark: str) -> list[list[Noad]]:
         else:
             pieces[-1].append(noad)
     return pieces
-
-
-def spelling_rank(noads: tuple[Noad, ...]) -> tuple[int, int]:
-    """Longer spellings first, and of the same length those with more scripts and bold type."""
-    return (len(noads), sum(n.bold + (n.sub is not None) + (n.sup is not None) for n in noads))
 
 
 def suggest_name(spelled: str) -> str:

@@ -146,6 +146,7 @@ def list_antiderivatives(question: Any, goal: Any, pair: Any, signs: list[int]) 
     x, f = to_sympy(("symbol", question.variable)), to_sympy(question.term)
     for bend, sign in zip(list_bends(question), signs, strict=True):
         f = f.subs(sp.Abs(to_sympy(bend)), sign * to_sympy(bend))
+    f = lower_exponentials(f, x, pair)
     known = {to_sympy(("symbol", n)): sp.Symbol(n, positive=True) for n, r in goal.box.items() if is_positive(r)}
     back = {value: key for key, value in known.items()}
     seen: set[str] = set()
@@ -297,6 +298,7 @@ def integrate_bells(f: Any, x: Any) -> Any:
 def integrate_quotient_of_cosine(f: Any, x: Any) -> Any:
     """s/(p + q cos u) for a linear u, without the jumps of tan(u/2)."""
     top, bottom = sp.fraction(sp.together(f))
+    bottom = sp.expand(TR8(sp.expand(bottom)))  # squares as cosines of the double angle
     waves = [w for w in bottom.atoms(sp.cos, sp.sin) if w.has(x)]
     if len(waves) != 1 or top.has(x):
         return None

@@ -194,13 +194,9 @@ def gather_angle(angle: sp.Basic, found: Ingredients) -> None:
         found.angles[monomial] = lcm(found.angles.get(monomial, 1), coefficient.denominator)
         inverse = single_function(monomial, INVERSE)
         if inverse is not None and found.angles[monomial] == 1:
-            gather_inverse(inverse, found)
-
-
-def gather_inverse(inverse: sp.Basic, found: Ingredients) -> None:
-    for argument in inverse.args:
-        gather(argument, found)
-    found.roots.setdefault((inverse_radicand(inverse), 2))
+            for argument in inverse.args:
+                gather(argument, found)
+            found.roots.setdefault((inverse_radicand(inverse), 2))
 
 
 def inverse_radicand(inverse: sp.Basic) -> sp.Expr:

@@ -244,19 +244,15 @@ def list_assumptions(claim: TextClaim, cases: Sequence[Any]) -> Iterator[str]:
     positive = {t for relation, t in needed if relation == ">"}
     goal = cases[0].goals[0]._replace(exists=(), zeros=(), given=()) if len(cases) > 1 else cases[0].goals[0]
     for relation, term in needed:
-        is_known = bool(known & {term, player.negate(term)}) or (relation != ">" and strip_root(term) in positive)
+        factors = [f for f in player.list_factors(term) if f[0] != "number"]
+        inside = factors[0][1] if len(factors) == 1 and factors[0][0] == "sqrt" else term
+        is_known = bool(known & {term, player.negate(term)}) or (relation != ">" and inside in positive)
         if not player.symbols_of(term) or is_known:
             continue
         own = goal._replace(term=term, relation=relation, exists=())
         ways = (own._replace(zeros=()), own) if own.zeros else (own,)
         if all(find_proof(way, rounds=EASY) is None for way in ways):
             yield f"{claim.show(write_condition(term))} {relation} 0"
-
-
-def strip_root(term: Any) -> Any:
-    """What a root with a number before it is taken of; else the term itself."""
-    factors = [f for f in player.list_factors(term) if f[0] != "number"]
-    return factors[0][1] if len(factors) == 1 and factors[0][0] == "sqrt" else term
 
 
 def write_condition(term: Any) -> str:

@@ -96,8 +96,8 @@ def read_text_claim(
     links = read_links(block, where)
     trees = [read_link(link, sizes, where) for link in links]
     texts = [text for left, _, right in links for text in (left, right)]
-    given = read_given(block.get("given", []), sizes, join_place(where, "given"))
-    stated = [read_hypothesis(text, sizes, where=join_place(where, "given")) for text in given]
+    given = read_texts(block.get("given", []), place := join_place(where, "given"))
+    stated = [read_hypothesis(text, sizes, where=join_place(place, i)) for i, text in enumerate(given)]
     exists = read_texts(block.get("exists", []), join_place(where, "exists"))
     for i, text in enumerate(exists):
         trees.append(read_value(text, sizes, where=join_place(join_place(where, "exists"), i)).tree)
@@ -339,14 +339,6 @@ def read_order(block: Table, shapes: Mapping[str, Shape], where: str) -> dict[st
         message = f"expected a whole number from 1 to {MOST_ORDER}; got {quote(order)}; correct it"
         raise DomainError(message, where=where)
     return {name: order}
-
-
-def read_given(value: Any, sizes: Mapping[str, Size], where: str) -> list[str]:
-    """The hypotheses, each a relation."""
-    texts = read_texts(value, where)
-    for i, text in enumerate(texts):
-        read_hypothesis(text, sizes, where=join_place(where, i))
-    return texts
 
 
 def read_texts(value: Any, where: str) -> list[str]:

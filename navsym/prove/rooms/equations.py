@@ -99,7 +99,9 @@ def by_modulus(goal: Any, sample: list[arb]) -> Iterator[Proof]:
     for part in dict.fromkeys(p for p in subterms(goal.term) if p[0] in ("sqrt", "abs", "^")):
         if part[0] == "^" and not (player.constant_of(part[2]) or fmpq(1)).q > 1:
             continue
-        inside = join_squares(to_sympy(part[1]))
+        inside = to_sympy(part[1])
+        if inside.has(sp.sin, sp.cos) and sp.count_ops(inside) < 60:
+            inside = sp.trigsimp(factor(inside))  # by sin(x)**2 + cos(x)**2 = 1
         power = sp.Integer(1) if part[0] == "abs" else sp.Rational(1, 2)
         power = power if part[0] != "^" else sp.Rational(str(player.constant_of(part[2])))
         root = inside if part[0] == "abs" else sp.powdenest(sp.sqrt(factor(inside)) ** (2 * power), force=True)
@@ -160,12 +162,6 @@ def write_roots(goal: Any, factors: dict[sp.Expr, Any], exponent: sp.Rational) -
         is_whole = (power * exponent).is_Integer
         texts.append(f"({positive})**({power * exponent})" if is_whole else f"(({positive})**({exponent}))**({power})")
     return "*".join(texts) if sign > 0 else None
-
-
-def join_squares(inside: sp.Expr) -> sp.Expr:
-    """A short sum with sines and cosines as algebra has it by sin(x)**2 + cos(x)**2 = 1."""
-    is_short = inside.has(sp.sin, sp.cos) and sp.count_ops(inside) < 60
-    return sp.trigsimp(factor(inside)) if is_short else inside
 
 
 def rewrite_atom(atom: str, value: str) -> Proof:

@@ -65,7 +65,9 @@ def find_sum(
             for k, w in enumerate(weights)
             if w
         ]
-        terms += [write_square(d, row, parts) for d, row in squares]
+        for d, row in squares:
+            inner = [("*", player.number(c), p) for c, p in zip(row, (player.ONE, *parts), strict=True) if c != 0]
+            terms.append(("*", player.number(d), ("^", ("+", player.ZERO, *inner), player.number(2))))
         proofs += [None] * len(squares)
         while len(terms) < 2:  # a sum has two terms
             terms, proofs = [*terms, player.ZERO], [*proofs, {"rule": "identity"}]
@@ -156,9 +158,3 @@ def split_squares(rows: Rows) -> list[tuple[fmpq, list[fmpq]]] | None:
         found.append((pivot, row))
         rest = [[a - pivot * row[i] * row[j] for j, a in enumerate(line)] for i, line in enumerate(rest)]
     return found
-
-
-def write_square(d: fmpq, row: Sequence[fmpq], parts: Sequence[Term]) -> Term:
-    """d (r_0 + r_1 x_1 + ...)**2."""
-    terms = [("*", player.number(c), part) for c, part in zip(row, (player.ONE, *parts), strict=True) if c != 0]
-    return ("*", player.number(d), ("^", ("+", player.ZERO, *terms), player.number(2)))

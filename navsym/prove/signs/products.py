@@ -81,7 +81,7 @@ def real_factors(converter: Converter, polynomial: fmpq_mpoly) -> list[sp.Expr] 
 def real_form(converter: Converter, factor: fmpq_mpoly) -> sp.Expr | None:
     """A factor divided by its middle power: a sum of cosines, or i times a sum of sines."""
     terms = {tuple(int(e) for e in k): to_fraction(c) for k, c in factor.to_dict().items()}
-    places = angle_places(converter)
+    places = range(start := len(converter.found.symbols), start + len(converter.found.angles))
     if len(terms) == 1 and all(p in places or p == len(k) - 1 for k in terms for p, e in enumerate(k) if e):
         return sp.Integer(1)  # of modulus one: only z and the root of unity occur
     if any(exponents[-1] for exponents in terms):
@@ -91,11 +91,6 @@ def real_form(converter: Converter, factor: fmpq_mpoly) -> sp.Expr | None:
         if is_symmetric(converter, terms, centre, parity):
             return rebuild_product(converter, terms, centre, parity)
     return None
-
-
-def angle_places(converter: Converter) -> range:
-    start = len(converter.found.symbols)
-    return range(start, start + len(converter.found.angles))
 
 
 def is_symmetric(

@@ -236,6 +236,8 @@ def test_absolute_values_of_waves_and_logarithms_are_integrated_from_zero_to_zer
         ("integral(1/cos(x), x, 0, L)", "log((1 + sin(L))/cos(L))", "log((1 - sin(L))/cos(L))", {"L": ("0", "3/2")}),
         ("integral(sqrt(1 + x**2), x, 0, T)", "(T*sqrt(1 + T**2) + log(T + sqrt(1 + T**2)))/2", "T", {"T": "positive"}),
         ("integral(exp(-x)/(1 + exp(-x))**2, x, -oo, y)", "1/(1 + exp(-y))", "1/(1 + exp(y))", {}),
+        ("integral(1/(1 + exp(x)), x, 0, oo)", "log(2)", "1", {}),
+        ("integral(1/(1 + cos(x)**2), x, 0, pi)", "pi/sqrt(2)", "0", {}),
     ],
 )
 def test_the_other_side_is_tried_as_an_antiderivative_and_exponentials_fall_at_infinity(text, true, false, given):
