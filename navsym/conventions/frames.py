@@ -64,23 +64,16 @@ class Passage:
             return self.slow_down(R, estimate), self.slow_down(R, x)
         R, moved = flow.level(x), estimate.position - x.position
         tilted = R @ (identity() + skew(flow.turn(x) @ flow.tilt(x, estimate)))
-        velocity = R @ x.velocity
-        r = constant([Nilpotent(at, 0, v.value) for at, v in zip(self.centre(), velocity, strict=True)])
+        truth, w = turn_state(R, x, True), flow.world
+        centre = locate(w.sin, w.cos, w.meridian, w.h, w.RN, w.RE)
+        r = constant([Nilpotent(at, 0, v.value) for at, v in zip(centre, truth.velocity, strict=True)])
         there = r + R @ flow.to_metres(x, moved)
-        truth = replace(x, attitude=R @ x.attitude, velocity=velocity, position=r)
-        outer = tilted @ estimate.attitude
-        return replace(estimate, attitude=outer, velocity=tilted @ estimate.velocity, position=there), truth
-
-    def centre(self) -> list[Any]:
-        """The position from the centre of the Earth in its frame."""
-        w = self.source.world
-        return locate(w.sin, w.cos, w.meridian, w.h, w.RN, w.RE)
+        return replace(turn_state(tilted, estimate, True), position=there), replace(truth, position=r)
 
     def slow_down(self, R: Array, x: State) -> State:
         """A state of the inertial frame beside the Earth."""
-        r = R @ x.position
-        velocity = R @ x.velocity - cross(self.pole(), r)
-        return replace(x, attitude=R @ x.attitude, velocity=velocity, position=r)
+        turned = turn_state(R, x)
+        return replace(turned, velocity=turned.velocity - cross(self.pole(), turned.position))
 
     def pole(self) -> Array:
         """The rate of the Earth in its own frame."""
@@ -92,24 +85,19 @@ class Passage:
             return estimate, x
         if self.target.card.frame == "inertial":
             R = rotate_about_pole(self.source.world.angle, self.spin())
-            speeds = [s.velocity + cross(self.pole(), s.position) for s in (estimate, x)]
-            return tuple(  # type: ignore[return-value]
-                replace(s, attitude=R @ s.attitude, velocity=R @ velocity, position=R @ s.position)
-                for s, velocity in zip((estimate, x), speeds, strict=True)
-            )
+            faster = (replace(s, velocity=s.velocity + cross(self.pole(), s.position)) for s in (estimate, x))
+            return tuple(turn_state(R, s) for s in faster)  # type: ignore[return-value]
         flow, at = self.target, replace(x, position=ZERO)
         now = constant(VALUES(flow.level(at).T @ x.velocity))
         rate = flow.position_rate(replace(at, velocity=now))
-        azimuth = Nilpotent(0, 0, flow.azimuth_rate(at, rate).value)
+        azimuth = Nilpotent(0, 0, flow.least_turn(at, rate).value)
         at = replace(at, position=constant([Nilpotent(0, 0, part.value) for part in rate]), azimuth=azimuth)
         R = flow.level(at).T
         moved = flow.from_metres(at, R @ (estimate.position - x.position))
         place: dict[str, Any] = {"position": at.position + moved, "azimuth": at.azimuth + flow.least_turn(at, moved)}
         tilt = flow.turn(at) @ flow.tilt(at, replace(at, **place))
         tilted = (identity() - skew(tilt)) @ R
-        truth = replace(at, attitude=R @ x.attitude, velocity=R @ x.velocity)
-        outer, velocity = tilted @ estimate.attitude, tilted @ estimate.velocity
-        return replace(estimate, attitude=outer, velocity=velocity, **place), truth
+        return replace(turn_state(tilted, estimate, True), **place), turn_state(R, at, True)
 
 
 def carry_motion(source: Mechanisation, card: Card) -> Mechanisation:
@@ -157,9 +145,9 @@ def locate(sine: Any, cosine: Any, meridian: Sequence[Any], h: Any, RN: Any, RE:
     return [across * meridian[1], across * meridian[0], plus_height(RE * share, h) * sine]
 
 
-def turn_state(A: Array, x: State, is_geodetic: bool) -> State:
-    """A state in other axes; latitude, longitude and height stay."""
-    position = x.position if is_geodetic else A @ x.position
+def turn_state(A: Array, x: State, stays: bool = False) -> State:
+    """A state in other axes; latitude, longitude and height stay as they are."""
+    position = x.position if stays else A @ x.position
     return replace(x, attitude=A @ x.attitude, velocity=A @ x.velocity, position=position)
 
 

@@ -149,12 +149,7 @@ class Mechanisation:
         coriolis = cross(earth + earth + transport, x.velocity)
         velocity = force + self.gravity(x) - coriolis
         position = self.position_rate(x)
-        return State(attitude, velocity, position, x.constants, self.azimuth_rate(x, position))
-
-    def azimuth_rate(self, x: State, position: Array) -> Nilpotent:
-        """Rate of the wander angle: the axes do not turn beside the Earth about the vertical."""
-        wanders = self.is_geodetic and self.card.azimuth == WANDER
-        return position[1] * self.trigonometry(x)[0] if wanders else NOTHING
+        return State(attitude, velocity, position, x.constants, self.least_turn(x, position))
 
     def trigonometry(self, x: State) -> tuple[Nilpotent, Nilpotent]:
         """Sine and cosine of the latitude."""
@@ -280,7 +275,10 @@ class Mechanisation:
         return constant([longitude * cosine, -latitude, estimate.azimuth - x.azimuth - longitude * sine])
 
     def least_turn(self, x: State, moved: Array) -> Nilpotent:
-        """The change of the wander angle with a change of the position by which the axes turn least."""
+        """The change of the wander angle with a change of the position, or its rate, by which the axes turn least.
+
+        They do not turn beside the Earth about the vertical.
+        """
         wanders = self.is_geodetic and self.card.azimuth == WANDER
         return moved[1] * self.trigonometry(x)[0] if wanders else NOTHING
 

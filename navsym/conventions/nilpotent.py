@@ -39,20 +39,19 @@ class Nilpotent:
     def __init__(self, value: Any = 0, error: Any = 0, rate: Any = 0, mixed: Any = 0):
         self.value, self.error, self.rate, self.mixed = value, error, rate, mixed
 
+    def parts(self) -> tuple[Any, Any, Any, Any]:
+        """The four coefficients."""
+        return self.value, self.error, self.rate, self.mixed
+
     def __add__(self, other: Nilpotent) -> Nilpotent:
         if self is NOTHING or other is NOTHING:
             return other if self is NOTHING else self
-        return Nilpotent(
-            plus(self.value, other.value),
-            plus(self.error, other.error),
-            plus(self.rate, other.rate),
-            plus(self.mixed, other.mixed),
-        )
+        return Nilpotent(*map(plus, self.parts(), other.parts()))
 
     def __neg__(self) -> Nilpotent:
         if self is NOTHING:
             return self
-        return Nilpotent(times(-1, self.value), times(-1, self.error), times(-1, self.rate), times(-1, self.mixed))
+        return Nilpotent(*(times(-1, part) for part in self.parts()))
 
     def __sub__(self, other: Nilpotent) -> Nilpotent:
         return self + -other
@@ -62,8 +61,7 @@ class Nilpotent:
             return NOTHING
         if self is ONE or other is ONE:
             return other if self is ONE else self
-        a, e, t, m = self.value, self.error, self.rate, self.mixed
-        A, E, T, M = other.value, other.error, other.rate, other.mixed
+        (a, e, t, m), (A, E, T, M) = self.parts(), other.parts()
         mixed = plus(plus(times(a, M), times(m, A)), plus(times(e, T), times(t, E)))
         return Nilpotent(times(a, A), plus(times(a, E), times(e, A)), plus(times(a, T), times(t, A)), mixed)
 
@@ -75,8 +73,7 @@ class Nilpotent:
         one = self.value if type(self.value) is int and abs(self.value) == 1 else 1 / self.value
         square = one * one
         curved = times(2, times(square * one, times(self.error, self.rate)))
-        linear = (times(-1, times(square, part)) for part in (self.error, self.rate, self.mixed))
-        error, rate, mixed = linear
+        error, rate, mixed = (times(-1, times(square, part)) for part in self.parts()[1:])
         return Nilpotent(one, error, rate, plus(mixed, curved))
 
     def advance(self, rate: Nilpotent) -> Nilpotent:
