@@ -145,7 +145,7 @@ def read_target(source: Card, changes: Mapping[str, str], problem: Problem) -> t
     return target, whole
 
 
-def transform(way: Passage, role: str, component: int, C: Array | None = None) -> dict[str, list[Any]]:
+def transform(way: Passage, role: str, component: int, C: Array | None = None) -> dict[str, Array]:
     """A column of T and of its rate with every sign plus: role -> nilpotents whose error and mixed part they are.
 
     C : rotation from the body to the axes that the way has for its body
@@ -222,12 +222,11 @@ class Converter:
             gravity = constant(world.gravity)
             if len(given.get("gravity", ())) == 3 and self.source.frame == LEVEL == flow.card.frame:
                 gravity = whole.turn(x) @ [NOTHING, NOTHING, *gravity]
-            vectors = {"velocity": x.velocity, "known_vector": constant(world.seen)}
+            vectors: dict[str, Any] = {"velocity": x.velocity, "known_vector": constant(world.seen)}
             vectors["velocity_body"] = x.attitude.T @ x.velocity
             vectors["earth_rate"] = whole.earth_rate(x) if level else constant(world.earth_rate)
             vectors |= {"specific_force": x.attitude @ constant(world.f), "gravity": gravity}
-            there = (whole.transport_rate(x), []) if level else ([], constant(world.r))
-            vectors |= zip(("transport_rate", "position"), there, strict=True)
+            vectors |= {"transport_rate": whole.transport_rate(x)} if level else {"position": constant(world.r)}
             vectors = {name: v for name, v in vectors.items() if len(given.get(name, "")) == 3 or name == "gravity"}
             if self.source.frame == flow.card.frame and len(given.get("gravity", "")) < 3:
                 del vectors["gravity"]

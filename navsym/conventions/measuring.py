@@ -36,7 +36,7 @@ def measure(flow: Mechanisation, kind: str, estimate: State, x: State) -> Array:
         return measure_position(flow, estimate, x)
     if kind == "height":
         moved = estimate.position - x.position
-        return [moved[2] if flow.is_geodetic else -(flow.turn(x).T @ moved)[2]]
+        return constant([moved[2] if flow.is_geodetic else -(flow.turn(x).T @ moved)[2]])
     if kind == "attitude":
         return flow.unskew(estimate.attitude @ x.attitude.T)
     shown = SHOWN[kind]
@@ -61,26 +61,13 @@ def spin(flow: Mechanisation, x: State) -> Array:
     return cross(flow.sensed(x, "gyro") - turning, constant(flow.world.arm))
 
 
-def show_velocity(flow: Mechanisation, x: State) -> Array:
-    """Velocity of the end of the lever arm in the frame."""
-    return x.velocity + x.attitude @ spin(flow, x)
-
-
-def show_body_velocity(flow: Mechanisation, x: State) -> Array:
-    """Velocity of the end of the lever arm in the body: odometer, Doppler log, wheels that do not slip."""
-    return x.attitude.T @ x.velocity + spin(flow, x)
-
-
-def show_vector(flow: Mechanisation, x: State) -> Array:
-    """A vector that is known in the frame, as the body sees it: magnetic field, gravity, a star."""
-    return x.attitude.T @ constant(flow.world.seen)
-
-
+#: Velocities of the end of the lever arm: in the frame, and in the body (odometer, Doppler log, wheels that do not
+#: slip); and a vector that is known in the frame, as the body sees it: magnetic field, gravity, a star.
 SHOWN: Mapping[str, Callable[[Mechanisation, State], Array]] = {
-    "velocity": show_velocity,
-    "body_velocity": show_body_velocity,
+    "velocity": lambda flow, x: x.velocity + x.attitude @ spin(flow, x),
+    "body_velocity": lambda flow, x: x.attitude.T @ x.velocity + spin(flow, x),
     "zero_velocity": lambda flow, x: x.velocity,
-    "vector": show_vector,
+    "vector": lambda flow, x: x.attitude.T @ constant(flow.world.seen),
 }
 
 

@@ -106,8 +106,9 @@ class State:
 
     def advance(self, rate: State) -> State:
         """The state after the infinitesimal time tau."""
-        pairs = ((getattr(self, name), getattr(rate, name)) for name in ("attitude", "velocity", "position"))
-        return State(*(ADVANCE(*pair) for pair in pairs), self.constants, self.azimuth.advance(rate.azimuth))
+        attitude, velocity = ADVANCE(self.attitude, rate.attitude), ADVANCE(self.velocity, rate.velocity)
+        position, azimuth = ADVANCE(self.position, rate.position), self.azimuth.advance(rate.azimuth)
+        return State(attitude, velocity, position, self.constants, azimuth)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -265,7 +266,7 @@ class Mechanisation:
         if not self.is_geodetic or (self.card.angle != "psi" and self.card.azimuth != WANDER):
             return identity()
         tilt = self.tilt(x, estimate)
-        tilt = tilt if self.card.angle == "psi" else [NOTHING, NOTHING, tilt[2]]
+        tilt = tilt if self.card.angle == "psi" else constant([NOTHING, NOTHING, tilt[2]])
         return identity() - skew(self.turn(x) @ tilt)
 
     def tilt(self, x: State, estimate: State) -> Array:

@@ -84,10 +84,10 @@ class Nilpotent:
 NOTHING, ONE = Nilpotent(), Nilpotent(1)
 
 
-LIFT = np.frompyfunc(lambda x: x if type(x) is Nilpotent else Nilpotent(x), 1, 1)
-VALUES = np.frompyfunc(lambda x: x.value, 1, 1)
+LIFT: Any = np.frompyfunc(lambda x: x if type(x) is Nilpotent else Nilpotent(x), 1, 1)
+VALUES: Any = np.frompyfunc(lambda x: x.value, 1, 1)
 #: ``x + tau * rate``, entry by entry.
-ADVANCE = np.frompyfunc(Nilpotent.advance, 2, 1)
+ADVANCE: Any = np.frompyfunc(Nilpotent.advance, 2, 1)
 
 
 def constant(values: Any) -> Array:

@@ -286,12 +286,14 @@ def list_columns(aiding: Aiding) -> list[tuple[str, int]]:
 def error_model(scene: Scene, aiding: Aiding) -> LinearModel:
     """F and H of the errors along a manoeuvre, with the rates of all that moves."""
     columns = list_columns(aiding)
-    blocks = {block: [NOTHING] * size_of(block) for block in (*CAMERA, "arm", *(f"landmark {i}" for i in (1, 2, 3)))}
+    blocks = {
+        block: constant([NOTHING] * size_of(block)) for block in (*CAMERA, "arm", *(f"landmark {i}" for i in (1, 2, 3)))
+    }
     truth = scene.flow.truth()
     later = truth.advance(scene.flow.rate(truth)).attitude.T
     F, H = sp.zeros(len(columns), len(columns)), []
     for place, (block, j) in enumerate(columns):
-        unit = [Nilpotent(0, 1 if i == j else 0) for i in range(size_of(block))]
+        unit = constant([Nilpotent(0, 1 if i == j else 0) for i in range(size_of(block))])
         estimate, errors = truth, {**blocks, block: unit}
         if block in STATES:
             estimate = scene.flow.estimate(truth, unit_error(block, j))
