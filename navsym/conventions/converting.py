@@ -226,7 +226,8 @@ class Converter:
             vectors["velocity_body"] = x.attitude.T @ x.velocity
             vectors["earth_rate"] = whole.earth_rate(x) if level else constant(world.earth_rate)
             vectors |= {"specific_force": x.attitude @ constant(world.f), "gravity": gravity}
-            vectors |= {"transport_rate": whole.transport_rate(x)} if level else {"position": constant(world.r)}
+            there: tuple[Any, Any] = (whole.transport_rate(x), []) if level else ([], constant(world.r))
+            vectors |= zip(("transport_rate", "position"), there, strict=True)
             vectors = {name: v for name, v in vectors.items() if len(given.get(name, "")) == 3 or name == "gravity"}
             if self.source.frame == flow.card.frame and len(given.get("gravity", "")) < 3:
                 del vectors["gravity"]
