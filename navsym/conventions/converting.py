@@ -19,7 +19,7 @@ from navsym.conventions.frames import LEVEL, OTHERS, Passage, carry_motion, chan
 from navsym.conventions.generating import require_names, write_blocks
 from navsym.conventions.measuring import NOISE_MARK
 from navsym.conventions.mechanisation import ROLES, Mechanisation, unit_error
-from navsym.conventions.nilpotent import NOTHING, Grid, apply, constant, transpose
+from navsym.conventions.nilpotent import NOTHING, Array, constant
 from navsym.conventions.points import BITS
 from navsym.conventions.proof import Prover
 from navsym.conventions.reading import HIDDEN, Problem, matrix_of, print_matrix
@@ -145,7 +145,7 @@ def read_target(source: Card, changes: Mapping[str, str], problem: Problem) -> t
     return target, whole
 
 
-def transform(way: Passage, role: str, component: int, C: Grid | None = None) -> dict[str, list[Any]]:
+def transform(way: Passage, role: str, component: int, C: Array | None = None) -> dict[str, Array]:
     """A column of T and of its rate with every sign plus: role -> nilpotents whose error and mixed part they are.
 
     C : rotation from the body to the axes that the way has for its body
@@ -153,9 +153,9 @@ def transform(way: Passage, role: str, component: int, C: Grid | None = None) ->
     truth = way.source.truth()
     later = truth.advance(way.source.rate(truth))
     given = unit_error(role, component)
-    given = way.source.turn_errors(C, given) if C else given
+    given = way.source.turn_errors(C, given) if C is not None else given
     error = way.target.compare(*way.carry(way.source.estimate(later, given), later))
-    error = way.target.turn_errors(transpose(C), error) if C else error
+    error = way.target.turn_errors(C.T, error) if C is not None else error
     return {name: error[name] for name in ROLES}
 
 
@@ -172,7 +172,7 @@ class Converter:
         roles = len(problem.roles)  # columns of T and its inverse, blocks of F, rows of what is proved
         self.progress, self.done, self.steps = progress, 0, 6 * roles + roles * roles + 2 * self.n
 
-        self.rotation = [constant(row) for row in self.formulas.world.C]
+        self.rotation = constant(self.formulas.world.C)
         self.moves = any(getattr(source, n) != getattr(target, n) for n in ("frame", "axes", "azimuth"))
 
     def step(self) -> None:
@@ -221,12 +221,12 @@ class Converter:
             x, world, level = whole.truth(), flow.world, flow.card.frame == LEVEL
             gravity = constant(world.gravity)
             if len(given.get("gravity", ())) == 3 and self.source.frame == LEVEL == flow.card.frame:
-                gravity = apply(whole.turn(x), [NOTHING, NOTHING, *gravity])
-            vectors = {"velocity": x.velocity, "known_vector": constant(world.seen)}
-            vectors["velocity_body"] = apply(transpose(x.attitude), x.velocity)
+                gravity = whole.turn(x) @ [NOTHING, NOTHING, *gravity]
+            vectors: dict[str, Any] = {"velocity": x.velocity, "known_vector": constant(world.seen)}
+            vectors["velocity_body"] = x.attitude.T @ x.velocity
             vectors["earth_rate"] = whole.earth_rate(x) if level else constant(world.earth_rate)
-            vectors |= {"specific_force": apply(x.attitude, constant(world.f)), "gravity": gravity}
-            there = (whole.transport_rate(x), []) if level else ([], constant(world.r))
+            vectors |= {"specific_force": x.attitude @ constant(world.f), "gravity": gravity}
+            there: tuple[Any, Any] = (whole.transport_rate(x), []) if level else ([], constant(world.r))
             vectors |= zip(("transport_rate", "position"), there, strict=True)
             vectors = {name: v for name, v in vectors.items() if len(given.get(name, "")) == 3 or name == "gravity"}
             if self.source.frame == flow.card.frame and len(given.get("gravity", "")) < 3:

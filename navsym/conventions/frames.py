@@ -12,26 +12,7 @@ from typing import Any
 
 from navsym.conventions.card import DROPPED, KEPT, NORTH, WANDER, Card
 from navsym.conventions.mechanisation import AXES, Mechanisation, State, plus_height, rotate_about_pole
-from navsym.conventions.nilpotent import (
-    NOTHING,
-    Grid,
-    Nilpotent,
-    Vector,
-    add,
-    add_vectors,
-    apply,
-    constant,
-    cross,
-    identity,
-    multiply,
-    negate,
-    rotate,
-    skew,
-    subtract,
-    times,
-    transpose,
-    values_of,
-)
+from navsym.conventions.nilpotent import VALUES, ZERO, Array, Nilpotent, constant, cross, identity, rotate, skew, times
 from navsym.core.errors import DomainError
 
 LEVEL = "local-level"
@@ -51,10 +32,10 @@ class Passage:
         wander = [card.azimuth == WANDER for card in (self.source.card, self.target.card)]
         return self.source.card.frame == self.target.card.frame and wander[0] == wander[1]
 
-    def turn(self) -> Grid:
+    def turn(self) -> Array:
         """Rotation from the axes of the source to those of the card."""
-        target, source = ([constant(row) for row in AXES[card.axes]] for card in (self.target.card, self.source.card))
-        return multiply(target, transpose(source))
+        target, source = (constant(AXES[card.axes]) for card in (self.target.card, self.source.card))
+        return target @ source.T
 
     def spin(self) -> Any:
         """The rate of the Earth; 0 where both cards drop it."""
@@ -79,29 +60,22 @@ class Passage:
         if flow.card.frame == "earth":
             return estimate, x
         if flow.card.frame == "inertial":
-            R = transpose(rotate_about_pole(flow.world.angle, self.spin()))
+            R = rotate_about_pole(flow.world.angle, self.spin()).T
             return self.slow_down(R, estimate), self.slow_down(R, x)
-        R, moved = flow.level(x), add_vectors(estimate.position, negate(x.position))
-        tilted = multiply(R, add(identity(), skew(apply(flow.turn(x), flow.tilt(x, estimate)))))
-        velocity = apply(R, x.velocity)
-        r = [Nilpotent(at, 0, v.value) for at, v in zip(self.centre(), velocity, strict=True)]
-        there = add_vectors(r, apply(R, flow.to_metres(x, moved)))
-        truth = replace(x, attitude=multiply(R, x.attitude), velocity=velocity, position=r)
-        outer = multiply(tilted, estimate.attitude)
-        return replace(estimate, attitude=outer, velocity=apply(tilted, estimate.velocity), position=there), truth
+        R, moved = flow.level(x), estimate.position - x.position
+        tilted = R @ (identity() + skew(flow.turn(x) @ flow.tilt(x, estimate)))
+        truth, w = turn_state(R, x, True), flow.world
+        centre = locate(w.sin, w.cos, w.meridian, w.h, w.RN, w.RE)
+        r = constant([Nilpotent(at, 0, v.value) for at, v in zip(centre, truth.velocity, strict=True)])
+        there = r + R @ flow.to_metres(x, moved)
+        return replace(turn_state(tilted, estimate, True), position=there), replace(truth, position=r)
 
-    def centre(self) -> list[Any]:
-        """The position from the centre of the Earth in its frame."""
-        w = self.source.world
-        return locate(w.sin, w.cos, w.meridian, w.h, w.RN, w.RE)
-
-    def slow_down(self, R: Grid, x: State) -> State:
+    def slow_down(self, R: Array, x: State) -> State:
         """A state of the inertial frame beside the Earth."""
-        r = apply(R, x.position)
-        velocity = add_vectors(apply(R, x.velocity), negate(cross(self.pole(), r)))
-        return replace(x, attitude=multiply(R, x.attitude), velocity=velocity, position=r)
+        turned = turn_state(R, x)
+        return replace(turned, velocity=turned.velocity - cross(self.pole(), turned.position))
 
-    def pole(self) -> Vector:
+    def pole(self) -> Array:
         """The rate of the Earth in its own frame."""
         return constant([0, 0, self.spin()])
 
@@ -111,27 +85,19 @@ class Passage:
             return estimate, x
         if self.target.card.frame == "inertial":
             R = rotate_about_pole(self.source.world.angle, self.spin())
-            speeds = [add_vectors(s.velocity, cross(self.pole(), s.position)) for s in (estimate, x)]
-            return tuple(  # type: ignore[return-value]
-                replace(s, attitude=multiply(R, s.attitude), velocity=apply(R, velocity), position=apply(R, s.position))
-                for s, velocity in zip((estimate, x), speeds, strict=True)
-            )
-        flow, at = self.target, replace(x, position=[NOTHING] * 3)
-        now = [Nilpotent(part.value) for part in apply(transpose(flow.level(at)), x.velocity)]
+            faster = (replace(s, velocity=s.velocity + cross(self.pole(), s.position)) for s in (estimate, x))
+            return tuple(turn_state(R, s) for s in faster)  # type: ignore[return-value]
+        flow, at = self.target, replace(x, position=ZERO)
+        now = constant(VALUES(flow.level(at).T @ x.velocity))
         rate = flow.position_rate(replace(at, velocity=now))
-        azimuth = Nilpotent(0, 0, flow.azimuth_rate(at, rate).value)
-        at = replace(at, position=[Nilpotent(0, 0, part.value) for part in rate], azimuth=azimuth)
-        R = transpose(flow.level(at))
-        moved = flow.from_metres(at, apply(R, add_vectors(estimate.position, negate(x.position))))
-        place: dict[str, Any] = {
-            "position": add_vectors(at.position, moved),
-            "azimuth": at.azimuth + flow.least_turn(at, moved),
-        }
-        tilt = apply(flow.turn(at), flow.tilt(at, replace(at, **place)))
-        tilted = multiply(subtract(identity(), skew(tilt)), R)
-        truth = replace(at, attitude=multiply(R, x.attitude), velocity=apply(R, x.velocity))
-        outer, velocity = multiply(tilted, estimate.attitude), apply(tilted, estimate.velocity)
-        return replace(estimate, attitude=outer, velocity=velocity, **place), truth
+        azimuth = Nilpotent(0, 0, flow.least_turn(at, rate).value)
+        at = replace(at, position=constant([Nilpotent(0, 0, part.value) for part in rate]), azimuth=azimuth)
+        R = flow.level(at).T
+        moved = flow.from_metres(at, R @ (estimate.position - x.position))
+        place: dict[str, Any] = {"position": at.position + moved, "azimuth": at.azimuth + flow.least_turn(at, moved)}
+        tilt = flow.turn(at) @ flow.tilt(at, replace(at, **place))
+        tilted = (identity() - skew(tilt)) @ R
+        return replace(turn_state(tilted, estimate, True), **place), turn_state(R, at, True)
 
 
 def carry_motion(source: Mechanisation, card: Card) -> Mechanisation:
@@ -140,35 +106,34 @@ def carry_motion(source: Mechanisation, card: Card) -> Mechanisation:
     moves = not way.stays
     if not moves and card.axes == source.card.axes:
         return way.target
-    out = transpose(axes_of(way.target)) if moves else identity()
-    A = multiply(out, axes_of(source)) if moves else way.turn()
-    same: dict[str, Any] = {"C": values_of(multiply(A, source.truth().attitude)), "seen": rotate(A, world.seen)}
+    out = axes_of(way.target).T if moves else identity()
+    A = out @ axes_of(source) if moves else way.turn()
+    same: dict[str, Any] = {"C": VALUES(A @ source.truth().attitude), "seen": rotate(A, world.seen)}
     if not moves:
         transport = None if world.transport is None else rotate(A, world.transport)
         same |= {"v": rotate(A, world.v), "r": rotate(A, world.r), "transport": transport}
         return Mechanisation(card, replace(world, **same))
     _, truth = way.to_earth(source.truth(), source.truth())
-    at, velocity = ([Nilpotent(x.value) for x in vector] for vector in (truth.position, truth.velocity))
-    gravity, W = apply(axes_of(source), source.gravity(source.truth())), way.spin()
+    at, velocity = (constant(VALUES(vector)) for vector in (truth.position, truth.velocity))
+    gravity, W = axes_of(source) @ source.gravity(source.truth()), way.spin()
     whirl = cross(way.pole(), cross(way.pole(), at))
     if source.card.frame == "inertial":
-        gravity = add_vectors(gravity, negate(whirl))
+        gravity = gravity - whirl
     if card.frame == "inertial":
-        gravity, velocity = add_vectors(gravity, whirl), add_vectors(velocity, cross(way.pole(), at))
-    gravity, rate = apply(out, gravity), [0, 0, W]
+        gravity, velocity = gravity + whirl, velocity + cross(way.pole(), at)
+    gravity, rate = out @ gravity, [0, 0, W]
     if card.frame == LEVEL:
-        gravity = apply(transpose(way.target.turn(source.truth())), gravity)[2:]
+        gravity = (way.target.turn(source.truth()).T @ gravity)[2:]
         rate = [times(W, world.cos), times(-1, times(W, world.sin))]
-    names = {"v": apply(out, velocity), "r": apply(out, at), "gravity": gravity}
-    same |= {name: [x.value for x in vector] for name, vector in names.items()}
+    same |= {"v": VALUES(out @ velocity), "r": VALUES(out @ at), "gravity": VALUES(gravity)}
     return Mechanisation(card, replace(world, **same, earth_rate=rate, transport=None))
 
 
-def axes_of(flow: Mechanisation) -> Grid:
+def axes_of(flow: Mechanisation) -> Array:
     """Rotation from the frame of a card to that of the Earth, now."""
     if flow.card.frame == LEVEL:
-        return flow.level(replace(flow.truth(), position=[NOTHING] * 3))
-    return transpose(rotate_about_pole(flow.world.angle)) if flow.card.frame == "inertial" else identity()
+        return flow.level(replace(flow.truth(), position=ZERO))
+    return rotate_about_pole(flow.world.angle).T if flow.card.frame == "inertial" else identity()
 
 
 def locate(sine: Any, cosine: Any, meridian: Sequence[Any], h: Any, RN: Any, RE: Any) -> list[Any]:
@@ -180,10 +145,10 @@ def locate(sine: Any, cosine: Any, meridian: Sequence[Any], h: Any, RN: Any, RE:
     return [across * meridian[1], across * meridian[0], plus_height(RE * share, h) * sine]
 
 
-def turn_state(A: Grid, x: State, is_geodetic: bool) -> State:
-    """A state in other axes; latitude, longitude and height stay."""
-    position = x.position if is_geodetic else apply(A, x.position)
-    return replace(x, attitude=multiply(A, x.attitude), velocity=apply(A, x.velocity), position=position)
+def turn_state(A: Array, x: State, stays: bool = False) -> State:
+    """A state in other axes; latitude, longitude and height stay as they are."""
+    position = x.position if stays else A @ x.position
+    return replace(x, attitude=A @ x.attitude, velocity=A @ x.velocity, position=position)
 
 
 # The card in another frame

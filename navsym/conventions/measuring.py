@@ -16,24 +16,7 @@ from typing import Any
 
 from navsym.conventions.card import DROPPED, SENSORS
 from navsym.conventions.mechanisation import CONSTANTS, ROLES, Mechanisation, State, flat_card, unit_error
-from navsym.conventions.nilpotent import (
-    NOTHING,
-    Grid,
-    Nilpotent,
-    Vector,
-    add,
-    add_vectors,
-    apply,
-    constant,
-    cross,
-    identity,
-    multiply,
-    negate,
-    skew,
-    subtract,
-    times,
-    transpose,
-)
+from navsym.conventions.nilpotent import ZERO, Array, Nilpotent, constant, cross, identity, skew, times
 
 #: What a measurement shows -> the number of its rows.
 MEASURED: Mapping[str, int] = {
@@ -47,57 +30,44 @@ CORRECTED = ("attitude", "velocity", "position")
 MEASURED_MARK, NOISE_MARK, RESET_MARK = "measured ", "noise ", "reset "
 
 
-def measure(flow: Mechanisation, kind: str, estimate: State, x: State) -> Vector:
+def measure(flow: Mechanisation, kind: str, estimate: State, x: State) -> Array:
     """The measurement that the estimate predicts less the true one; arms are small beside the radii of the Earth."""
     if kind == "position":
         return measure_position(flow, estimate, x)
     if kind == "height":
-        moved = add_vectors(estimate.position, negate(x.position))
-        return [moved[2] if flow.is_geodetic else -apply(transpose(flow.turn(x)), moved)[2]]
+        moved = estimate.position - x.position
+        return constant([moved[2] if flow.is_geodetic else -(flow.turn(x).T @ moved)[2]])
     if kind == "attitude":
-        return flow.unskew(multiply(estimate.attitude, transpose(x.attitude)))
+        return flow.unskew(estimate.attitude @ x.attitude.T)
     shown = SHOWN[kind]
-    return add_vectors(shown(flow, estimate), negate(shown(flow, x)))
+    return shown(flow, estimate) - shown(flow, x)
 
 
-def measure_position(flow: Mechanisation, estimate: State, x: State) -> Vector:
+def measure_position(flow: Mechanisation, estimate: State, x: State) -> Array:
     """Position of the end of the lever arm, in the units of the card's position error."""
-    moved = add_vectors(estimate.position, negate(x.position))
-    arm = apply(subtract(estimate.attitude, x.attitude), constant(flow.world.arm))
+    moved = estimate.position - x.position
+    arm = (estimate.attitude - x.attitude) @ constant(flow.world.arm)
     if flow.is_geodetic and flow.card.position_error == "metres":
         moved = flow.to_metres(x, moved)
     elif flow.is_geodetic:
         arm = flow.from_metres(x, arm)
-    return add_vectors(moved, arm)
+    return moved + arm
 
 
-def spin(flow: Mechanisation, x: State) -> Vector:
+def spin(flow: Mechanisation, x: State) -> Array:
     """Velocity of the end of the lever arm beside its origin and the Earth, in the body."""
     at = flow.truth() if flow.card.arm_rate == "value" else x
-    turning = apply(transpose(at.attitude), flow.earth_rate(at)) if flow.card.arm_rate != DROPPED else [NOTHING] * 3
-    return cross(add_vectors(flow.sensed(x, "gyro"), negate(turning)), constant(flow.world.arm))
+    turning = at.attitude.T @ flow.earth_rate(at) if flow.card.arm_rate != DROPPED else ZERO
+    return cross(flow.sensed(x, "gyro") - turning, constant(flow.world.arm))
 
 
-def show_velocity(flow: Mechanisation, x: State) -> Vector:
-    """Velocity of the end of the lever arm in the frame."""
-    return add_vectors(x.velocity, apply(x.attitude, spin(flow, x)))
-
-
-def show_body_velocity(flow: Mechanisation, x: State) -> Vector:
-    """Velocity of the end of the lever arm in the body: odometer, Doppler log, wheels that do not slip."""
-    return add_vectors(apply(transpose(x.attitude), x.velocity), spin(flow, x))
-
-
-def show_vector(flow: Mechanisation, x: State) -> Vector:
-    """A vector that is known in the frame, as the body sees it: magnetic field, gravity, a star."""
-    return apply(transpose(x.attitude), constant(flow.world.seen))
-
-
-SHOWN: Mapping[str, Callable[[Mechanisation, State], Vector]] = {
-    "velocity": show_velocity,
-    "body_velocity": show_body_velocity,
+#: Velocities of the end of the lever arm: in the frame, and in the body (odometer, Doppler log, wheels that do not
+#: slip); and a vector that is known in the frame, as the body sees it: magnetic field, gravity, a star.
+SHOWN: Mapping[str, Callable[[Mechanisation, State], Array]] = {
+    "velocity": lambda flow, x: x.velocity + x.attitude @ spin(flow, x),
+    "body_velocity": lambda flow, x: x.attitude.T @ x.velocity + spin(flow, x),
     "zero_velocity": lambda flow, x: x.velocity,
-    "vector": show_vector,
+    "vector": lambda flow, x: x.attitude.T @ constant(flow.world.seen),
 }
 
 
@@ -125,27 +95,27 @@ def reset_column(flow: Mechanisation, role: str, component: int) -> dict[str, li
     """
     on_earth, flow = flow.is_geodetic, Mechanisation(flat_card(flow.card), flow.world)
     truth, error, given = flow.truth(), unit_error(role, component), flow.world.corrections
-    correction = {name: [Nilpotent(0, 0, x) for x in given[name]] for name in given}
-    both = {name: add_vectors(error[name], correction[name]) for name in given}
+    correction = {name: constant([Nilpotent(0, 0, x) for x in given[name]]) for name in given}
+    both = {name: error[name] + correction[name] for name in given}
     C, in_frame = truth.attitude, flow.card.attitude_error == "frame"
-    square = [[flow.half() * x for x in row] for row in multiply(skew(both["attitude"]), skew(both["attitude"]))]
-    small = add(add(identity(), skew(both["attitude"])), square)
-    back = subtract(identity(), skew(correction["attitude"]))
-    before = multiply(small, C) if in_frame else multiply(C, small)
-    after = multiply(back, before) if in_frame else multiply(before, back)
+    turn = skew(both["attitude"])
+    small = identity() + turn + turn @ turn * flow.half()
+    back = identity() - skew(correction["attitude"])
+    before = small @ C if in_frame else C @ small
+    after = back @ before if in_frame else before @ back
     velocity, position = (
         take_out(flow, name, flow.shift(name, vector, both[name], C, before), correction[name], before, after)
         for name, vector in (("velocity", truth.velocity), ("position", truth.position))
     )
     left = flow.compare(State(after, velocity, position, truth.constants), truth)
-    left["position"] = [NOTHING] * 3 if on_earth else left["position"]
+    left["position"] = ZERO if on_earth else left["position"]
     return {RESET_MARK + name: [part.mixed for part in left[name]] for name in ROLES}
 
 
-def take_out(flow: Mechanisation, role: str, estimate: Vector, correction: Vector, before: Grid, after: Grid) -> Vector:
+def take_out(flow: Mechanisation, role: str, estimate: Array, correction: Array, before: Array, after: Array) -> Array:
     """An estimated vector without its correction: the inverse of the definition of its error."""
     S, R = flow.sides(role, after, before)
-    return apply(transpose(S), add_vectors(estimate, negate(apply(R, correction))))
+    return S.T @ (estimate - R @ correction)
 
 
 def full_column(flow: Mechanisation, role: str, component: int) -> dict[str, list[Any]]:

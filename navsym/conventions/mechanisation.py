@@ -16,27 +16,19 @@ from typing import Any
 
 from navsym.conventions.card import DROPPED, KEPT, SENSORS, WANDER, Card
 from navsym.conventions.nilpotent import (
+    ADVANCE,
     NOTHING,
     ONE,
-    Grid,
+    VALUES,
+    ZERO,
+    Array,
     Nilpotent,
-    Vector,
-    add,
-    add_vectors,
-    apply,
-    combine,
     constant,
     cross,
     identity,
-    multiply,
-    negate,
     rotate,
     skew,
-    subtract,
     times,
-    total,
-    transpose,
-    values_of,
 )
 
 #: Columns: north, east, down in the axes; the third axis is vertical.
@@ -106,18 +98,17 @@ class State:
     azimuth : small change of the wander angle, from north to east
     """
 
-    attitude: Grid
-    velocity: Vector
-    position: Vector
-    constants: Mapping[str, Vector]
+    attitude: Array
+    velocity: Array
+    position: Array
+    constants: Mapping[str, Array]
     azimuth: Nilpotent = NOTHING
 
     def advance(self, rate: State) -> State:
         """The state after the infinitesimal time tau."""
-        attitude = combine(Nilpotent.advance, self.attitude, rate.attitude)
-        now, after = ([x.velocity, x.position] for x in (self, rate))
-        velocity, position = combine(Nilpotent.advance, now, after)
-        return State(attitude, velocity, position, self.constants, self.azimuth.advance(rate.azimuth))
+        attitude, velocity = ADVANCE(self.attitude, rate.attitude), ADVANCE(self.velocity, rate.velocity)
+        position, azimuth = ADVANCE(self.position, rate.position), self.azimuth.advance(rate.azimuth)
+        return State(attitude, velocity, position, self.constants, azimuth)
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -132,41 +123,34 @@ class Mechanisation:
         """True where the position is latitude, longitude and height."""
         return self.card.frame == "local-level" and self.card.earth != "none"
 
-    def turn(self, x: State) -> Grid:
+    def turn(self, x: State) -> Array:
         """Rotation from north, east, down to the axes."""
         sine, cosine = constant(self.world.wander)
-        rows = axes_rows(self.card, sine + cosine * x.azimuth, cosine - sine * x.azimuth)
-        return [[part if type(part) is Nilpotent else Nilpotent(part) for part in row] for row in rows]
+        return constant(axes_rows(self.card, sine + cosine * x.azimuth, cosine - sine * x.azimuth))
 
     def truth(self) -> State:
         """The true state; its biases and scales are taken from the sensors' output and are zero."""
-        position = [NOTHING] * 3 if self.is_geodetic else constant(self.world.r)
-        attitude = [constant(row) for row in self.world.C]
-        return State(attitude, constant(self.world.v), position, dict.fromkeys(CONSTANTS, [NOTHING] * 3))
+        position = ZERO if self.is_geodetic else constant(self.world.r)
+        return State(constant(self.world.C), constant(self.world.v), position, dict.fromkeys(CONSTANTS, ZERO))
 
-    def sensed(self, x: State, sensor: str) -> Vector:
+    def sensed(self, x: State, sensor: str) -> Array:
         """What a sensor shows less its bias and its scale by the state x."""
-        world = self.world
-        shown, scaled = (world.w, world.w) if sensor == "gyro" else (world.f, world.body_force or world.f)
+        shown = self.world.w if sensor == "gyro" else self.world.f
+        scaled = shown if sensor == "gyro" or self.world.body_force is None else self.world.body_force
         bias, scale = x.constants[f"{sensor}_bias"], x.constants[f"{sensor}_scale"]
-        return [f - b - k * s for f, b, k, s in zip(constant(shown), bias, scale, constant(scaled), strict=True)]
+        return constant(shown) - bias - scale * constant(scaled)
 
     # The flow
 
     def rate(self, x: State) -> State:
         """dx/dt of the mechanisation that is fed with the sensors' output less the biases and scales of x."""
-        w, force = self.sensed(x, "gyro"), apply(x.attitude, self.sensed(x, "accelerometer"))
+        w, force = self.sensed(x, "gyro"), x.attitude @ self.sensed(x, "accelerometer")
         earth, transport = self.earth_rate(x), self.transport_rate(x)
-        attitude = subtract(multiply(x.attitude, skew(w)), multiply(skew(add_vectors(earth, transport)), x.attitude))
-        coriolis = cross(add_vectors(earth, earth, transport), x.velocity)
-        velocity = add_vectors(force, self.gravity(x), negate(coriolis))
+        attitude = x.attitude @ skew(w) - skew(earth + transport) @ x.attitude
+        coriolis = cross(earth + earth + transport, x.velocity)
+        velocity = force + self.gravity(x) - coriolis
         position = self.position_rate(x)
-        return State(attitude, velocity, position, x.constants, self.azimuth_rate(x, position))
-
-    def azimuth_rate(self, x: State, position: Vector) -> Nilpotent:
-        """Rate of the wander angle: the axes do not turn beside the Earth about the vertical."""
-        wanders = self.is_geodetic and self.card.azimuth == WANDER
-        return position[1] * self.trigonometry(x)[0] if wanders else NOTHING
+        return State(attitude, velocity, position, x.constants, self.least_turn(x, position))
 
     def trigonometry(self, x: State) -> tuple[Nilpotent, Nilpotent]:
         """Sine and cosine of the latitude."""
@@ -185,32 +169,32 @@ class Mechanisation:
             north, east = north + Nilpotent(world.slope) * x.position[0], east + across * x.position[0]
         return north, east
 
-    def earth_rate(self, x: State) -> Vector:
+    def earth_rate(self, x: State) -> Array:
         """Rate of the Earth in the frame."""
         if self.card.earth_rate != KEPT:
-            return [NOTHING] * 3
+            return ZERO
         if self.card.frame == "earth":
             return constant(self.world.earth_rate)
         north, down = constant(self.world.earth_rate)
         change = x.position[0] if self.is_geodetic else NOTHING
-        return apply(self.turn(x), [north + down * change, NOTHING, down - north * change])
+        return self.turn(x) @ [north + down * change, NOTHING, down - north * change]
 
-    def transport_rate(self, x: State) -> Vector:
+    def transport_rate(self, x: State) -> Array:
         """Rate of a local level beside the Earth, in its axes."""
         if self.card.transport_rate != KEPT:
-            return [NOTHING] * 3
+            return ZERO
         turn = self.turn(x)
-        north, east, _ = apply(transpose(turn), x.velocity)
+        north, east, _ = turn.T @ x.velocity
         sine, cosine = self.trigonometry(x)
         meridian, across = self.radii(x, (KEPT,))
         down = NOTHING if self.card.azimuth == WANDER else -east * sine / (across * cosine)
-        rate = apply(turn, [east / across, -north / meridian, down])
+        rate = turn @ [east / across, -north / meridian, down]
         if self.world.transport is not None:
             pairs = zip(self.world.transport, rate, strict=True)
-            rate = [Nilpotent(name, part.error, part.rate, part.mixed) for name, part in pairs]
+            rate = constant([Nilpotent(name, part.error, part.rate, part.mixed) for name, part in pairs])
         return rate
 
-    def gravity(self, x: State) -> Vector:
+    def gravity(self, x: State) -> Array:
         """Gravity at the state, in the frame."""
         card, world = self.card, self.world
         if card.frame == "local-level":
@@ -218,67 +202,63 @@ class Mechanisation:
             if card.gravity_gradient == "vertical":
                 radius = Nilpotent(world.gradient_radii[str(card.gravity_radius)])
                 down = down - Nilpotent(2) * down * x.position[2] / radius
-            return apply(self.turn(x), [NOTHING, NOTHING, down])
-        moved = add_vectors(x.position, negate(constant(world.r)))
-        value = add_vectors(constant(world.gravity), self.pull_change(moved))
+            return self.turn(x) @ [NOTHING, NOTHING, down]
+        moved = x.position - constant(world.r)
+        value = constant(world.gravity) + self.pull_change(moved)
         if card.centrifugal == KEPT:
             earth = constant(world.earth_rate)
-            value = add_vectors(value, negate(cross(earth, cross(earth, moved))))
+            value = value - cross(earth, cross(earth, moved))
         return value
 
-    def pull_change(self, moved: Vector) -> Vector:
+    def pull_change(self, moved: Array) -> Array:
         """First-order change of gravitation with the position."""
         kind, world = self.card.gravity_gradient, self.world
         if kind in ("none", "normal"):
-            return [NOTHING] * 3 if kind == "none" else self.normal_change(moved)
+            return ZERO if kind == "none" else self.normal_change(moved)
         r = constant(world.r)
-        square = total([x * x for x in r])
-        along = total([x * y for x, y in zip(r, moved, strict=True)])
+        along = r @ moved
         if kind == "central":
-            pull, three = Nilpotent(world.pull), Nilpotent(3)
-            return [pull * (three * x * along / square - y) for x, y in zip(r, moved, strict=True)]
+            return (r * (Nilpotent(3) * along / (r @ r)) - moved) * Nilpotent(world.pull)
         name = self.card.gravity_radius or "radial"
         distance, radius = Nilpotent(world.radius), Nilpotent(world.gradient_radii[name])
-        factor = Nilpotent(-2) * along / (distance * radius)
-        return [factor * g for g in constant(world.gravity)]
+        return constant(world.gravity) * (Nilpotent(-2) * along / (distance * radius))
 
-    def normal_change(self, moved: Vector) -> Vector:
+    def normal_change(self, moved: Array) -> Array:
         """The same for gravity along the normal of the Earth, by its curvature and its gradient along the normal."""
         world, level = self.world, self.normal_axes()
-        north, east, sunk = apply(transpose(level), moved)
-        down = apply(transpose(level), constant(world.gravity))[2]
+        north, east, sunk = level.T @ moved
+        down = (level.T @ constant(world.gravity))[2]
         meridian, across = (Nilpotent(plus_height(radius, world.h)) for radius in (world.RN, world.RE))
         grown = NOTHING
         if self.card.gravity_radius:
             grown = Nilpotent(2) * down * sunk / Nilpotent(world.gradient_radii[self.card.gravity_radius])
-        return apply(level, [-down * north / meridian, -down * east / across, grown])
+        return level @ [-down * north / meridian, -down * east / across, grown]
 
-    def normal_axes(self) -> Grid:
+    def normal_axes(self) -> Array:
         """Rotation from north, east, down to a frame of the Earth or of inertial space."""
         level = level_rows(*constant((self.world.sin, self.world.cos, *self.world.meridian)))
-        return multiply(rotate_about_pole(self.world.angle), level) if self.card.frame == "inertial" else level
+        return rotate_about_pole(self.world.angle) @ level if self.card.frame == "inertial" else level
 
-    def position_rate(self, x: State) -> Vector:
+    def position_rate(self, x: State) -> Array:
         """Rate of the position."""
         return self.from_metres(x, x.velocity) if self.is_geodetic else x.velocity
 
     # Errors: from a truth and an error to an estimate, and back
 
-    def metres(self, x: State) -> Vector:
+    def metres(self, x: State) -> Array:
         """Metres along north, east, down per unit of latitude, longitude and height."""
         meridian, across = self.radii(x)
-        return [meridian, across * self.trigonometry(x)[1], Nilpotent(-1)]
+        return constant([meridian, across * self.trigonometry(x)[1], Nilpotent(-1)])
 
-    def to_metres(self, x: State, moved: Vector) -> Vector:
+    def to_metres(self, x: State, moved: Array) -> Array:
         """Metres along the axes of a small change of latitude, longitude and height."""
-        return apply(self.turn(x), [part * unit for part, unit in zip(moved, self.metres(x), strict=True)])
+        return self.turn(x) @ (moved * self.metres(x))
 
-    def from_metres(self, x: State, moved: Vector) -> Vector:
+    def from_metres(self, x: State, moved: Array) -> Array:
         """The small change of latitude, longitude and height of metres along the axes."""
-        ned = apply(transpose(self.turn(x)), moved)
-        return [part / unit for part, unit in zip(ned, self.metres(x), strict=True)]
+        return self.turn(x).T @ moved / self.metres(x)
 
-    def reference(self, x: State, estimate: State) -> Grid:
+    def reference(self, x: State, estimate: State) -> Array:
         """Rotation from the true frame to that in which the errors are resolved.
 
         For psi it is the axes at the estimated position. Where axes wander they are told by the least turn for phi.
@@ -286,66 +266,69 @@ class Mechanisation:
         if not self.is_geodetic or (self.card.angle != "psi" and self.card.azimuth != WANDER):
             return identity()
         tilt = self.tilt(x, estimate)
-        tilt = tilt if self.card.angle == "psi" else [NOTHING, NOTHING, tilt[2]]
-        return subtract(identity(), skew(apply(self.turn(x), tilt)))
+        tilt = tilt if self.card.angle == "psi" else constant([NOTHING, NOTHING, tilt[2]])
+        return identity() - skew(self.turn(x) @ tilt)
 
-    def tilt(self, x: State, estimate: State) -> Vector:
+    def tilt(self, x: State, estimate: State) -> Array:
         """The small rotation, in north, east, down, from the axes at the truth to those at the estimate."""
         sine, cosine = self.trigonometry(x)
-        latitude, longitude, _ = add_vectors(estimate.position, negate(x.position))
-        return [longitude * cosine, -latitude, estimate.azimuth - x.azimuth - longitude * sine]
+        latitude, longitude, _ = estimate.position - x.position
+        return constant([longitude * cosine, -latitude, estimate.azimuth - x.azimuth - longitude * sine])
 
-    def least_turn(self, x: State, moved: Vector) -> Nilpotent:
-        """The change of the wander angle with a change of the position by which the axes turn least."""
+    def least_turn(self, x: State, moved: Array) -> Nilpotent:
+        """The change of the wander angle with a change of the position, or its rate, by which the axes turn least.
+
+        They do not turn beside the Earth about the vertical.
+        """
         wanders = self.is_geodetic and self.card.azimuth == WANDER
         return moved[1] * self.trigonometry(x)[0] if wanders else NOTHING
 
-    def level(self, x: State) -> Grid:
+    def level(self, x: State) -> Array:
         """Rotation from the axes of the local level at the state to the frame of the Earth."""
         sine, cosine = self.trigonometry(x)
         east, ahead = constant(self.world.meridian)
         east, ahead = east + ahead * x.position[1], ahead - east * x.position[1]
-        return multiply(level_rows(sine, cosine, east, ahead), transpose(self.turn(x)))
+        return level_rows(sine, cosine, east, ahead) @ self.turn(x).T
 
-    def estimate(self, x: State, error: Mapping[str, Vector]) -> State:
+    def estimate(self, x: State, error: Mapping[str, Array]) -> State:
         """The estimate that has this error; every sign is plus."""
         card = self.card
         moved = error["position"]
         if self.is_geodetic and card.position_error == "metres":
             moved = self.from_metres(x, moved)
         azimuth = x.azimuth + self.least_turn(x, moved)
-        frame = self.reference(x, replace(x, position=add_vectors(x.position, moved), azimuth=azimuth))
-        attitude = multiply(frame, x.attitude)
-        small = add(identity(), skew(error["attitude"]))
-        velocity = apply(frame, x.velocity)
-        turned = multiply(small, attitude) if card.attitude_error == "frame" else multiply(attitude, small)
+        frame = self.reference(x, replace(x, position=x.position + moved, azimuth=azimuth))
+        attitude = frame @ x.attitude
+        small = identity() + skew(error["attitude"])
+        velocity = frame @ x.velocity
+        turned = small @ attitude if card.attitude_error == "frame" else attitude @ small
         return State(
             turned,
             self.shift("velocity", velocity, error["velocity"], attitude, turned),
             self.shift("position", x.position, moved, attitude, turned),
-            {name: add_vectors(value, error[name]) for name, value in x.constants.items()},
+            {name: value + error[name] for name, value in x.constants.items()},
             azimuth,
         )
 
-    def shift(self, role: str, vector: Vector, error: Vector, attitude: Grid, turned: Grid) -> Vector:
+    def shift(self, role: str, vector: Array, error: Array, attitude: Array, turned: Array) -> Array:
         """The estimated vector S v + R e, by the true and the estimated attitude."""
         S, R = self.sides(role, attitude, turned)
-        return add_vectors(apply(S, vector), apply(R, error))
+        return S @ vector + R @ error
 
-    def sides(self, role: str, attitude: Grid, turned: Grid) -> tuple[Grid, Grid]:
+    def sides(self, role: str, attitude: Array, turned: Array) -> tuple[Array, Array]:
         """S, by which the truth is turned, and R, by which the error is brought to the frame."""
         turns, resolved = self.card.vector(role)
-        S = multiply(turned, transpose(attitude)) if turns else identity()
+        S = turned @ attitude.T if turns else identity()
         return S, (turned if turns else attitude) if resolved else identity()
 
-    def compare(self, estimate: State, x: State) -> dict[str, Vector]:
+    def compare(self, estimate: State, x: State) -> dict[str, Array]:
         """The error of an estimate; every sign is plus."""
         card = self.card
-        moved = add_vectors(estimate.position, negate(x.position))
+        moved = estimate.position - x.position
         frame = self.reference(x, estimate)
-        attitude, velocity = multiply(frame, x.attitude), apply(frame, x.velocity)
-        pair = estimate.attitude, transpose(attitude)
-        small = multiply(*(pair if card.attitude_error == "frame" else reversed(pair)))
+        attitude, velocity = frame @ x.attitude, frame @ x.velocity
+        C = estimate.attitude
+        small = C @ attitude.T if card.attitude_error == "frame" else attitude.T @ C
         if not self.is_geodetic:
             moved = self.unshift("position", estimate.position, x.position, attitude, estimate.attitude)
         elif card.position_error == "metres":
@@ -354,21 +337,21 @@ class Mechanisation:
             "attitude": self.unskew(small),
             "velocity": self.unshift("velocity", estimate.velocity, velocity, attitude, estimate.attitude),
             "position": moved,
-            **{name: add_vectors(value, negate(x.constants[name])) for name, value in estimate.constants.items()},
+            **{name: value - x.constants[name] for name, value in estimate.constants.items()},
         }
 
-    def unshift(self, role: str, estimate: Vector, vector: Vector, attitude: Grid, turned: Grid) -> Vector:
+    def unshift(self, role: str, estimate: Array, vector: Array, attitude: Array, turned: Array) -> Array:
         """The error of an estimated vector."""
         S, R = self.sides(role, attitude, turned)
-        return apply(transpose(R), add_vectors(estimate, negate(apply(S, vector))))
+        return R.T @ (estimate - S @ vector)
 
     def half(self) -> Nilpotent:
         """A half as a coefficient."""
         return Nilpotent(1 / (2 * (self.world.cos / self.world.cos)))
 
-    def unskew(self, A: Grid) -> Vector:
+    def unskew(self, A: Array) -> Array:
         """p of the skew part [p x] of a matrix."""
-        return [self.half() * (A[(k + 2) % 3][(k + 1) % 3] - A[(k + 1) % 3][(k + 2) % 3]) for k in range(3)]
+        return constant([A[k - 1, k - 2] - A[k - 2, k - 1] for k in range(3)]) * self.half()
 
     # The linearisation
 
@@ -380,7 +363,7 @@ class Mechanisation:
         flow, error = self, unit_error(role, component)
         plain = self.card.attitude_error == "frame" and not self.card.vector("velocity")[1]
         if plain and not role.endswith("_scale"):  # C stands beside C' alone; a scale belongs to an axis of the body
-            flow, error = self.turn_body(), self.turn_errors([constant(row) for row in self.world.C], error)
+            flow, error = self.turn_body(), self.turn_errors(constant(self.world.C), error)
         truth = flow.truth()
         estimate = flow.estimate(truth, error)
         after = flow.compare(estimate.advance(flow.rate(estimate)), truth.advance(flow.rate(truth)))
@@ -388,21 +371,20 @@ class Mechanisation:
 
     def turn_body(self) -> Mechanisation:
         """The motion in axes of the body that are now those of the frame: any will do, and C stays out of products."""
-        C = [constant(row) for row in self.world.C]
-        f, w = (rotate(C, v) for v in (self.world.f, self.world.w))
-        return Mechanisation(self.card, replace(self.world, C=values_of(identity()), f=f, w=w))
+        f, w = (rotate(constant(self.world.C), v) for v in (self.world.f, self.world.w))
+        return Mechanisation(self.card, replace(self.world, C=VALUES(identity()), f=f, w=w))
 
-    def turn_errors(self, A: Grid, errors: Mapping[str, Vector]) -> dict[str, Vector]:
+    def turn_errors(self, A: Array, errors: Mapping[str, Array]) -> dict[str, Array]:
         """Errors in other axes of the body, where they are resolved in it."""
         roles = {"attitude"} if self.card.attitude_error == "body" else set()
         roles |= {"gyro_bias", "accelerometer_bias"}
         roles |= {name for name in ("velocity", "position") if self.card.vector(name)[1]}
-        return {name: apply(A, v) if name in roles else v for name, v in errors.items()}
+        return {name: A @ v if name in roles else v for name, v in errors.items()}
 
 
-def unit_error(role: str, component: int) -> dict[str, Vector]:
+def unit_error(role: str, component: int) -> dict[str, Array]:
     """An error eps in one state."""
-    return {name: [Nilpotent(0, int(name == role and k == component)) for k in range(3)] for name in ROLES}
+    return {name: constant([Nilpotent(0, int(name == role and k == component)) for k in range(3)]) for name in ROLES}
 
 
 def axes_rows(card: Card, sine: Any, cosine: Any) -> list[list[Any]]:
@@ -412,16 +394,17 @@ def axes_rows(card: Card, sine: Any, cosine: Any) -> list[list[Any]]:
     return [[x if side > 0 else -x for x in turned[k]] for side, k in picked]
 
 
-def level_rows(sine: Nilpotent, cosine: Nilpotent, east: Nilpotent, ahead: Nilpotent) -> Grid:
+def level_rows(sine: Nilpotent, cosine: Nilpotent, east: Nilpotent, ahead: Nilpotent) -> Array:
     """Rotation from north, east, down to the frame of the Earth, by sines and cosines of latitude and longitude."""
-    return [[-sine * ahead, -east, -cosine * ahead], [-sine * east, ahead, -cosine * east], [cosine, NOTHING, -sine]]
+    rows = [[-sine * ahead, -east, -cosine * ahead], [-sine * east, ahead, -cosine * east], [cosine, NOTHING, -sine]]
+    return constant(rows)
 
 
-def rotate_about_pole(angle: Sequence[Any], rate: Any = 0) -> Grid:
+def rotate_about_pole(angle: Sequence[Any], rate: Any = 0) -> Array:
     """Rotation from the frame of the Earth to the inertial one, which moves on by ``rate``."""
     sine, cosine = angle
     s, c = Nilpotent(sine, 0, times(cosine, rate)), Nilpotent(cosine, 0, times(-1, times(sine, rate)))
-    return [[c, -s, NOTHING], [s, c, NOTHING], [NOTHING, NOTHING, ONE]]
+    return constant([[c, -s, NOTHING], [s, c, NOTHING], [NOTHING, NOTHING, ONE]])
 
 
 def add_centrifugal(card: Card, gravity: list[Any], earth: Sequence[Any], r: Sequence[Any]) -> list[Any]:

@@ -5,11 +5,13 @@ The coefficients may be balls or quotients of polynomials; an integer 0 stands f
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
 from typing import Any
 
-Vector = list["Nilpotent"]
-Grid = list[list["Nilpotent"]]
+import numpy as np
+from numpy.typing import NDArray
+
+#: A vector or a matrix of nilpotents.
+Array = NDArray[np.object_]
 
 
 def times(x: Any, y: Any) -> Any:
@@ -37,20 +39,19 @@ class Nilpotent:
     def __init__(self, value: Any = 0, error: Any = 0, rate: Any = 0, mixed: Any = 0):
         self.value, self.error, self.rate, self.mixed = value, error, rate, mixed
 
+    def parts(self) -> tuple[Any, Any, Any, Any]:
+        """The four coefficients."""
+        return self.value, self.error, self.rate, self.mixed
+
     def __add__(self, other: Nilpotent) -> Nilpotent:
-        if other is NOTHING:
-            return self
-        return Nilpotent(
-            plus(self.value, other.value),
-            plus(self.error, other.error),
-            plus(self.rate, other.rate),
-            plus(self.mixed, other.mixed),
-        )
+        if self is NOTHING or other is NOTHING:
+            return other if self is NOTHING else self
+        return Nilpotent(*map(plus, self.parts(), other.parts()))
 
     def __neg__(self) -> Nilpotent:
         if self is NOTHING:
             return self
-        return Nilpotent(times(-1, self.value), times(-1, self.error), times(-1, self.rate), times(-1, self.mixed))
+        return Nilpotent(*(times(-1, part) for part in self.parts()))
 
     def __sub__(self, other: Nilpotent) -> Nilpotent:
         return self + -other
@@ -60,8 +61,7 @@ class Nilpotent:
             return NOTHING
         if self is ONE or other is ONE:
             return other if self is ONE else self
-        a, e, t, m = self.value, self.error, self.rate, self.mixed
-        A, E, T, M = other.value, other.error, other.rate, other.mixed
+        (a, e, t, m), (A, E, T, M) = self.parts(), other.parts()
         mixed = plus(plus(times(a, M), times(m, A)), plus(times(e, T), times(t, E)))
         return Nilpotent(times(a, A), plus(times(a, E), times(e, A)), plus(times(a, T), times(t, A)), mixed)
 
@@ -73,8 +73,7 @@ class Nilpotent:
         one = self.value if type(self.value) is int and abs(self.value) == 1 else 1 / self.value
         square = one * one
         curved = times(2, times(square * one, times(self.error, self.rate)))
-        linear = (times(-1, times(square, part)) for part in (self.error, self.rate, self.mixed))
-        error, rate, mixed = linear
+        error, rate, mixed = (times(-1, times(square, part)) for part in self.parts()[1:])
         return Nilpotent(one, error, rate, plus(mixed, curved))
 
     def advance(self, rate: Nilpotent) -> Nilpotent:
@@ -85,81 +84,38 @@ class Nilpotent:
 NOTHING, ONE = Nilpotent(), Nilpotent(1)
 
 
-def constant(values: Sequence[Any]) -> Vector:
-    """A vector without infinitesimals."""
-    return [Nilpotent(value) for value in values]
+LIFT: Any = np.frompyfunc(lambda x: x if type(x) is Nilpotent else Nilpotent(x), 1, 1)
+VALUES: Any = np.frompyfunc(lambda x: x.value, 1, 1)
+#: ``x + tau * rate``, entry by entry.
+ADVANCE: Any = np.frompyfunc(Nilpotent.advance, 2, 1)
 
 
-def total(terms: Sequence[Nilpotent]) -> Nilpotent:
-    """The sum; nothing for no terms."""
-    result = NOTHING
-    for term in terms:
-        if term is not NOTHING:
-            result = term if result is NOTHING else result + term
-    return result
+def constant(values: Any) -> Array:
+    """A vector or matrix of nilpotents, of numbers or coefficients without infinitesimals.
+
+    Entries are objects: ``+``, ``-`` and ``@`` are theirs.
+    """
+    return LIFT(np.array(values, dtype=object))  # type: ignore[no-any-return]
 
 
-def cross(u: Vector, v: Vector) -> Vector:
+ZERO = constant([NOTHING] * 3)
+
+
+def cross(u: Array, v: Array) -> Array:
     """u x v."""
-    return [u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]]
+    return constant([u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]])
 
 
-def skew(u: Vector) -> Grid:
+def skew(u: Array) -> Array:
     """The matrix of ``u x``."""
-    return [[NOTHING, -u[2], u[1]], [u[2], NOTHING, -u[0]], [-u[1], u[0], NOTHING]]
+    return constant([[NOTHING, -u[2], u[1]], [u[2], NOTHING, -u[0]], [-u[1], u[0], NOTHING]])
 
 
-def identity() -> Grid:
+def identity() -> Array:
     """The unit matrix."""
-    return [[ONE if i == j else NOTHING for j in range(3)] for i in range(3)]
+    return constant([[ONE if i == j else NOTHING for j in range(3)] for i in range(3)])
 
 
-def transpose(A: Grid) -> Grid:
-    """A'."""
-    return [list(column) for column in zip(*A, strict=True)]
-
-
-def apply(A: Grid, v: Vector) -> Vector:
-    """A v."""
-    return [total([a * x for a, x in zip(row, v, strict=True)]) for row in A]
-
-
-def multiply(A: Grid, B: Grid) -> Grid:
-    """A B."""
-    columns = transpose(B)
-    return [[total([a * b for a, b in zip(row, column, strict=True)]) for column in columns] for row in A]
-
-
-def combine(operation: Callable[[Nilpotent, Nilpotent], Nilpotent], A: Grid, B: Grid) -> Grid:
-    """Two matrices entry by entry."""
-    return [[operation(a, b) for a, b in zip(*rows, strict=True)] for rows in zip(A, B, strict=True)]
-
-
-def add(A: Grid, B: Grid) -> Grid:
-    """A + B."""
-    return combine(Nilpotent.__add__, A, B)
-
-
-def subtract(A: Grid, B: Grid) -> Grid:
-    """A - B."""
-    return combine(Nilpotent.__sub__, A, B)
-
-
-def add_vectors(*vectors: Vector) -> Vector:
-    """The sum of vectors."""
-    return [total(parts) for parts in zip(*vectors, strict=True)]
-
-
-def negate(v: Vector) -> Vector:
-    """-v."""
-    return [-x for x in v]
-
-
-def rotate(A: Grid, v: Sequence[Any]) -> list[Any]:
+def rotate(A: Array, v: Any) -> Any:
     """A v in coefficients."""
-    return values_of([apply(A, constant(v))])[0]
-
-
-def values_of(A: Grid) -> list[list[Any]]:
-    """A matrix without infinitesimals."""
-    return [[x.value for x in row] for row in A]
+    return VALUES(A @ constant(v))

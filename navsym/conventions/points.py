@@ -16,7 +16,7 @@ from flint import arb, arb_mat, fmpq
 
 from navsym.conventions.card import KEPT, Card
 from navsym.conventions.mechanisation import Mechanisation
-from navsym.conventions.nilpotent import NOTHING, apply, constant, transpose
+from navsym.conventions.nilpotent import NOTHING, constant
 from navsym.conventions.reading import HIDDEN, Problem
 from navsym.conventions.symbols import GENERATORS, Formulas
 from navsym.core.balls import exact_ball
@@ -245,8 +245,8 @@ def follow(card: Card, world: Any) -> dict[str, list[Any]]:
         vectors = {"earth_rate": flow.earth_rate(flow.truth()), "gravity": flow.gravity(flow.truth())}
     elif card.gravity_gradient == "normal":
         axes = flow.normal_axes()
-        down = apply(transpose(axes), constant(world.gravity))[2]
-        vectors = {"gravity": apply(axes, [NOTHING, NOTHING, down])}
+        down = (axes.T @ constant(world.gravity))[2]
+        vectors = {"gravity": axes @ [NOTHING, NOTHING, down]}
     else:
         return {}
     return {name: [x.value for x in vector] for name, vector in vectors.items()}

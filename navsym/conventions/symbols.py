@@ -147,7 +147,7 @@ class Formulas:
         mean = self.symbol("mean", f"sqrt(({self.texts['RN']})*({self.texts.get('RE', self.texts['RN'])}))")
         w, v, slope = self.vector("w", "angular_rate"), self.vector("v", "velocity"), self.text("radius_slope")
         if "velocity_body" in given and "velocity" not in given:
-            v = rotate([constant(row) for row in C], self.vector("u", "velocity_body"))
+            v = rotate(constant(C), self.vector("u", "velocity_body"))
         motion = C, f, w, v, r, earth, sine, cosine, h, RN, RE, self.symbol("slope", slope)
         return World(
             *motion,

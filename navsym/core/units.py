@@ -6,7 +6,7 @@ Quantities of pint come in as such a text: of pint nothing is used but a magnitu
 from __future__ import annotations
 
 import re
-from collections.abc import Iterable, Mapping
+from collections.abc import Iterable
 from fractions import Fraction
 from math import pi, prod
 from typing import Any, NoReturn
@@ -18,22 +18,15 @@ Powers = dict[str | int, Fraction]
 
 BASES = ("m", "s", "kg", "A", "K", "mol", "cd")
 #: Unit -> its factor, powers of pi in it, and what it is a multiple of.
-TABLE: Mapping[str, tuple[str, int, str]] = {
+TABLE: dict[str, tuple[str, int, str]] = {
     "1": ("1", 0, ""), "rad": ("1", 0, ""), "sr": ("1", 0, ""), "%": ("1/100", 0, ""), "ppm": ("1/1000000", 0, ""),
     "deg": ("1/180", 1, ""), "arcmin": ("1/10800", 1, ""), "arcsec": ("1/648000", 1, ""), "gon": ("1/200", 1, ""),
-    "mrad": ("1/1000", 0, ""), "urad": ("1/1000000", 0, ""), "cycle": ("2", 1, ""), "rev": ("2", 1, ""),
-    "min": ("60", 0, "s"), "h": ("3600", 0, "s"), "day": ("86400", 0, "s"),
-    "ms": ("1/1000", 0, "s"), "us": ("1/1000000", 0, "s"), "ns": ("1/1000000000", 0, "s"),
-    "Hz": ("1", 0, "1/s"), "kHz": ("1000", 0, "1/s"), "MHz": ("1000000", 0, "1/s"), "GHz": ("1000000000", 0, "1/s"),
-    "km": ("1000", 0, "m"), "dm": ("1/10", 0, "m"), "cm": ("1/100", 0, "m"), "mm": ("1/1000", 0, "m"),
-    "um": ("1/1000000", 0, "m"), "ft": ("0.3048", 0, "m"), "nmi": ("1852", 0, "m"), "kn": ("463/900", 0, "m/s"),
-    "g": ("9.80665", 0, "m/s^2"), "mg": ("0.00980665", 0, "m/s^2"), "ug": ("0.00000980665", 0, "m/s^2"),
-    "Gal": ("1/100", 0, "m/s^2"), "mGal": ("1/100000", 0, "m/s^2"), "E": ("1/1000000000", 0, "1/s^2"),
-    "N": ("1", 0, "kg m/s^2"), "J": ("1", 0, "kg m^2/s^2"), "W": ("1", 0, "kg m^2/s^3"),
-    "V": ("1", 0, "kg m^2/s^3/A"), "T": ("1", 0, "kg/s^2/A"), "uT": ("1/1000000", 0, "T"),
-    "nT": ("1/1000000000", 0, "T"), "G": ("1/10000", 0, "T"), "Pa": ("1", 0, "kg/m/s^2"), "hPa": ("100", 0, "Pa"),
-    "mbar": ("100", 0, "Pa"), "kPa": ("1000", 0, "Pa"), "bar": ("100000", 0, "Pa"), "gram": ("1/1000", 0, "kg"),
-    "week": ("604800", 0, "s"), "inch": ("0.0254", 0, "m"), "mile": ("1609.344", 0, "m"),
+    "cycle": ("2", 1, ""), "rev": ("2", 1, ""), "min": ("60", 0, "s"), "h": ("3600", 0, "s"), "day": ("86400", 0, "s"),
+    "week": ("604800", 0, "s"), "Hz": ("1", 0, "1/s"), "ft": ("0.3048", 0, "m"), "inch": ("0.0254", 0, "m"),
+    "mile": ("1609.344", 0, "m"), "nmi": ("1852", 0, "m"), "kn": ("463/900", 0, "m/s"), "g": ("9.80665", 0, "m/s^2"),
+    "Gal": ("1/100", 0, "m/s^2"), "E": ("1/1000000000", 0, "1/s^2"), "N": ("1", 0, "kg m/s^2"), "J": ("1", 0, "N m"),
+    "W": ("1", 0, "J/s"), "V": ("1", 0, "W/A"), "T": ("1", 0, "kg/s^2/A"), "G": ("1/10000", 0, "T"),
+    "Pa": ("1", 0, "N/m^2"), "bar": ("100000", 0, "Pa"), "gram": ("1/1000", 0, "kg"),
 }  # fmt: skip
 #: Long names, which are those of pint, and the powers of ten of their prefixes.
 NAMES = {
@@ -47,6 +40,10 @@ NAMES = {
 PREFIXES = {
     "": 0, "giga": 9, "mega": 6, "kilo": 3, "hecto": 2, "deci": -1, "centi": -2, "milli": -3, "micro": -6, "nano": -9,
 }  # fmt: skip
+LETTERS = dict(zip("numcdhkMG", (-9, -6, -3, -2, -1, 2, 3, 6, 9), strict=True))
+#: Multiples that are written short; others have their long names.
+SHORT = "mrad urad ms us ns kHz MHz GHz km dm cm mm um mg ug mGal uT nT hPa kPa mbar".split()
+TABLE |= {name: (f"1e{LETTERS[name[0]]}", 0, name[1:]) for name in SHORT}
 #: A number, and one before a unit with a blank between; ``2 pi`` and a cut ``1.2E`` are none.
 NUMBER = re.compile(r"[+-]?(?:\d++/\d*[1-9]\d*+|(?:\d++(?:\.\d*+)?+|\.\d++)(?:[eE][+-]?\d{1,3})?+)", re.ASCII)
 AMOUNT = re.compile(rf"\s*({NUMBER.pattern})\s+((?!pi\b)[A-Za-z%].*)", re.ASCII)

@@ -31,8 +31,9 @@ from navsym.observability.ring import Ring
 
 #: Working precisions, one after the other, digits of an answer, times of the history, and halvings of a search.
 BITS, DIGITS, NODES, HALVINGS = (256, 512, 1024, 2048), 15, 24, 24
-#: Squarings of the power iteration.
+#: Squarings of the power iteration; and values that are in SI.
 ROUNDS = 48
+NO_UNITS: Mapping[str, str] = {}
 
 
 @dataclass(frozen=True, slots=True)
@@ -272,7 +273,8 @@ def ask_accuracy(
 ) -> Question:
     """The question about a flight; arguments as in :meth:`Observability.accuracy`."""
     where, moving, n = "accuracy", {s.name: s for s in rates}, len(contents.states)
-    end = read_values({"T": T}, ["T"], where)["T"] if T is not None else contents.T
+    own = {name: parameter.unit for name, parameter in contents.parameters.items()}
+    end = read_values({"T": T}, ["T"], where, own)["T"] if T is not None else contents.T
     if end is None:
         raise EmptyError("expected the length of the flight; got no interval; give T", where=where)
     if contents.pieces[1:]:
@@ -286,7 +288,7 @@ def ask_accuracy(
         if not (value.is_Rational and value > 0):
             message = f"expected a positive fraction; got {quote(str(value))}; give one"
             raise DomainError(message, where=f"{where}: {name}")
-    first = {moving[name]: value for name, value in read_values(start, moving, f"{where}: start").items()}
+    first = {moving[name]: value for name, value in read_values(start, moving, f"{where}: start", own).items()}
     flight = flight_of(contents, first, to_fmpq(end), None if step is None else to_fmpq(step), where)
     if flight.steps and not end.is_Integer:
         raise DomainError(f"expected a whole number of steps; got {end}; round it", where=f"{where}: T")
@@ -295,13 +297,15 @@ def ask_accuracy(
     return Question(flight, contents.states, targets, joint.unobservable, sizes, met, to_fmpq(end))
 
 
-def read_values(given: Mapping[str, Any], known: Collection[str], where: str) -> dict[str, sp.Expr]:
-    """Exact numbers by name. Raises UnknownSymbolError for a name that is not among the known ones."""
+def read_values(
+    given: Mapping[str, Any], known: Collection[str], where: str, units: Mapping[str, str] = NO_UNITS
+) -> dict[str, sp.Expr]:
+    """Exact numbers by name, in their units. Raises UnknownSymbolError for a name that is not among the known ones."""
     for name in given:
         if name not in known:
             remedy = suggest_nearest(str(name), known)
             raise UnknownSymbolError(f"expected a name of the model; got {quote(str(name))}; {remedy}", where=where)
-    return {name: read_constant(value, f"{where}: {name}") for name, value in given.items()}
+    return {name: read_constant(value, f"{where}: {name}", units.get(name, "")) for name, value in given.items()}
 
 
 def is_narrow(value: Number | None) -> bool:

@@ -193,10 +193,11 @@ def with_reference(found: Track, reference: Any) -> Track:
     return replace(found, nees=nees, warnings=(*found.warnings, str(nees.lag)))
 
 
-def settings_of(method: str | None, window: Any, order: int, gate: float, sigma: Any) -> Settings:
+def settings_of(method: str | None, window: float | None, order: int, gate: float, sigma: float | None) -> Settings:
     """The settings of a call: a window asks for the sliding window, every other method has to be named."""
     window, sigma = without_units(window, "track: window", "s"), without_units(sigma, "track: sigma", "m")
-    for name, value in (("window", window), ("gate", gate), ("sigma", sigma)):
+    numbers: dict[str, float | None] = {"window": window, "gate": gate, "sigma": sigma}
+    for name, value in numbers.items():
         if value is None:
             continue
         if isinstance(value, bool) or not isinstance(value, int | float | np.number) or not abs(value) < 1e300:

@@ -129,6 +129,12 @@ def test_a_quantity_is_in_the_unit_that_a_model_declares():
     assert phases.regimes[0].ends == ("1/10", "1")
 
 
+def test_the_length_of_a_flight_is_in_the_unit_of_the_interval():
+    model = nav.Model("x v", F=[["0", "1"], ["0", "0"]], H=["x"], interval="T", T={"unit": "min", "sign": "positive"})
+    found = [nav.observe(model).accuracy(T=T).document() for T in (2, "2 min", Q(120, "s"))]
+    assert found[0] == found[1] == found[2]
+
+
 def test_an_entry_of_a_declared_vector_has_its_unit():
     rows = [["0", "f[3]", "-f[2]"], ["-f[3]", "0", "f[1]"], ["f[2]", "-f[1]", "0"]]
     entries = "[" + ", ".join("[" + ", ".join(row) + "]" for row in rows) + "]"

@@ -15,19 +15,7 @@ import sympy as sp
 
 from navsym.conventions.card import DROPPED, KEPT, Card
 from navsym.conventions.mechanisation import ROLES, Mechanisation, State, World, unit_error
-from navsym.conventions.nilpotent import (
-    NOTHING,
-    Nilpotent,
-    Vector,
-    add,
-    add_vectors,
-    apply,
-    constant,
-    identity,
-    negate,
-    skew,
-    transpose,
-)
+from navsym.conventions.nilpotent import NOTHING, Array, Nilpotent, constant, identity, skew
 from navsym.core.errors import DomainError
 from navsym.language.names import quote
 from navsym.models.linear import LinearModel
@@ -172,77 +160,76 @@ def make_scene(card: Card, manoeuvre: Manoeuvre, points: int = 0, arm: Sequence[
 
 
 #: Errors of the extra states by block.
-Errors = Mapping[str, Vector]
+Errors = Mapping[str, Array]
 #: Roles whose states a cell has: no scale factors.
 STATES = ROLES[:5]
 
-Prediction = Callable[[Scene, State, Errors], Vector]
+Prediction = Callable[[Scene, State, Errors], Array]
 
 
-def shifted(vector: sp.Matrix, error: Vector) -> Vector:
+def shifted(vector: sp.Matrix, error: Array) -> Array:
     """A known vector with an error."""
-    return add_vectors(constant(list(vector)), error)
+    return constant(list(vector)) + error
 
 
-def predict_position(scene: Scene, x: State, errors: Errors) -> Vector:
+def predict_position(scene: Scene, x: State, errors: Errors) -> Array:
     """Position of the body's origin."""
     return x.position
 
 
-def predict_antenna(scene: Scene, x: State, errors: Errors) -> Vector:
+def predict_antenna(scene: Scene, x: State, errors: Errors) -> Array:
     """Position of the end of the lever arm."""
-    return add_vectors(x.position, apply(x.attitude, shifted(sp.Matrix(ARM), errors["arm"])))
+    return x.position + x.attitude @ shifted(sp.Matrix(ARM), errors["arm"])
 
 
-def predict_velocity(scene: Scene, x: State, errors: Errors) -> Vector:
+def predict_velocity(scene: Scene, x: State, errors: Errors) -> Array:
     """Velocity in the frame; at rest a zero-velocity update."""
     return x.velocity
 
 
-def from_body(scene: Scene, vector: Vector) -> Vector:
+def from_body(scene: Scene, vector: Array) -> Array:
     """What the body sees, turned by the true attitude: three measurements are mixed in a known way."""
-    return apply([constant(row) for row in scene.C.tolist()], vector)
+    return constant(scene.C.tolist()) @ vector
 
 
-def predict_body_velocity(scene: Scene, x: State, errors: Errors) -> Vector:
+def predict_body_velocity(scene: Scene, x: State, errors: Errors) -> Array:
     """Velocity in the body: odometer, Doppler log, wheels that do not slip."""
-    return from_body(scene, apply(transpose(x.attitude), x.velocity))
+    return from_body(scene, x.attitude.T @ x.velocity)
 
 
-def predict_field(scene: Scene, x: State, errors: Errors) -> Vector:
+def predict_field(scene: Scene, x: State, errors: Errors) -> Array:
     """A vector that is known in the frame, as the body sees it."""
-    return from_body(scene, apply(transpose(x.attitude), constant(list(scene.field))))
+    return from_body(scene, x.attitude.T @ constant(list(scene.field)))
 
 
-def see(scene: Scene, x: State, point: sp.Matrix, errors: Errors, landmark: str) -> Vector:
+def see(scene: Scene, x: State, point: sp.Matrix, errors: Errors, landmark: str) -> Array:
     """A place as the body or its camera sees it."""
     arm = sp.Matrix(ARM) if scene.in_body else sp.zeros(3, 1)
     place = shifted(point + arm, errors[landmark])
-    body = apply(transpose(x.attitude), add_vectors(place, negate(x.position)))
-    camera = add_vectors(body, negate(shifted(arm, errors["camera arm"])))
-    return from_body(scene, apply(transpose(add(identity(), skew(errors["camera angle"]))), camera))
+    body = x.attitude.T @ (place - x.position)
+    camera = body - shifted(arm, errors["camera arm"])
+    return from_body(scene, (identity() + skew(errors["camera angle"])).T @ camera)
 
 
-def predict_range(scene: Scene, x: State, errors: Errors) -> Vector:
+def predict_range(scene: Scene, x: State, errors: Errors) -> Array:
     """Half the squared distance to a known beacon."""
     seen = see(scene, x, scene.points[0], errors, "landmark 1")
-    square = sum((part * part for part in seen), NOTHING)
-    return [square * Nilpotent(sp.Rational(1, 2))]
+    return constant([seen @ seen * Nilpotent(sp.Rational(1, 2))])
 
 
-def predict_bearings(scene: Scene, x: State, errors: Errors) -> Vector:
+def predict_bearings(scene: Scene, x: State, errors: Errors) -> Array:
     """Directions of all places in the axes of the body or of its camera, where their third component is not zero.
 
     The delay of the camera moves each place by its rate.
     """
-    found: Vector = []
+    found: list[Nilpotent] = []
     for number, point in enumerate(scene.points, start=1):
         delay = errors["delay"][0]
         rate = derivative(point, scene.rates)
-        seen = add_vectors(see(scene, x, point, errors, f"landmark {number}"), [Nilpotent(r) * delay for r in rate])
+        seen = see(scene, x, point, errors, f"landmark {number}") + constant(list(rate)) * delay
         depth = Nilpotent(point[2])
         found += [seen[j] * depth - seen[2] * Nilpotent(point[j]) for j in (0, 1)]
-    return found
+    return constant(found)
 
 
 @dataclass(frozen=True, slots=True)
@@ -299,19 +286,21 @@ def list_columns(aiding: Aiding) -> list[tuple[str, int]]:
 def error_model(scene: Scene, aiding: Aiding) -> LinearModel:
     """F and H of the errors along a manoeuvre, with the rates of all that moves."""
     columns = list_columns(aiding)
-    blocks = {block: [NOTHING] * size_of(block) for block in (*CAMERA, "arm", *(f"landmark {i}" for i in (1, 2, 3)))}
+    blocks = {
+        block: constant([NOTHING] * size_of(block)) for block in (*CAMERA, "arm", *(f"landmark {i}" for i in (1, 2, 3)))
+    }
     truth = scene.flow.truth()
-    later = transpose(truth.advance(scene.flow.rate(truth)).attitude)
+    later = truth.advance(scene.flow.rate(truth)).attitude.T
     F, H = sp.zeros(len(columns), len(columns)), []
     for place, (block, j) in enumerate(columns):
-        unit = [Nilpotent(0, 1 if i == j else 0) for i in range(size_of(block))]
+        unit = constant([Nilpotent(0, 1 if i == j else 0) for i in range(size_of(block))])
         estimate, errors = truth, {**blocks, block: unit}
         if block in STATES:
             estimate = scene.flow.estimate(truth, unit_error(block, j))
             moved = scene.flow.column(block, j)
         else:  # a landmark stands still, and the axes in which its error is resolved turn
             turned = block.startswith("landmark") and scene.in_body
-            moved = {block: [part.mixed for part in apply(later, unit)]} if turned else {}
+            moved = {block: [part.mixed for part in later @ unit]} if turned else {}
         for row, (other, i) in enumerate(columns):
             F[row, place] = moved[other][i] if other in moved else 0
         H.append([part.error for predict in aiding.predictions for part in predict(scene, estimate, errors)])
