@@ -68,7 +68,7 @@ class Plan:
     def value(self) -> arb:
         """``sum w z``."""
         pairs = zip(self.basis, self.weights, strict=True)
-        return sum((w * arb(self.rows[i].z) for i, w in pairs), arb(0))
+        return sum((w * self.rows[i].z for i, w in pairs), arb(0))
 
 
 @dataclass(frozen=True, slots=True, eq=False)

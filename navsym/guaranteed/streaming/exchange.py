@@ -14,7 +14,6 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, field, replace
-from itertools import repeat
 from math import isfinite
 
 import numpy as np
@@ -107,7 +106,7 @@ class Cloud:
         return [int(places[k]) + self.first for k in independent_rows(rows, m)]
 
     def suspects(self, x: Array, radii: Array, known: Sequence[int] = ()) -> list[int]:
-        """Rows whose bound is not seen to be kept in doubles by all vectors of a ball, the worst first, but for some."""
+        """Rows, but for those known, whose bound doubles do not see kept by all vectors of a ball; the worst first."""
         rounding, far = ROUNDING * (len(x) + 4), np.abs(x)
         size = np.abs(self.scaled @ x if self.shifted is None else self.scaled @ x - self.shifted)
         slack = np.abs(self.scaled) @ (far * rounding + radii) + (self.wide * float((far + radii).sum()) + 1e-12)
@@ -310,10 +309,8 @@ def rehearse(cloud: Cloud, target: Array, basis: list[int], signs: list[int]) ->
         inverse = np.linalg.inv(rows.take(places, axis=0))
     except np.linalg.LinAlgError:
         return basis, signs
-    weights = target.dot(inverse)
-    side = np.array(
-        [s if w == 0.0 else 1.0 if w > 0.0 else -1.0 for w, s in zip(weights.tolist(), signs or repeat(1.0))]
-    )
+    weights, given = target.dot(inverse), signs or [1] * len(basis)
+    side = np.array([1.0 if w > 0.0 else -1.0 if w < 0.0 else s for w, s in zip(weights.tolist(), given, strict=True)])
     for _ in range(4 * len(basis) + 8):
         f = rows.dot(inverse.dot(side if shifted is None else side + shifted[places]))
         if shifted is not None:

@@ -23,7 +23,6 @@ from navsym.guaranteed.streaming.exchange import (
     exchange,
     price_basis,
     solve_basis,
-    to_doubles,
     violated_row,
 )
 from navsym.guaranteed.streaming.explanations import Combination, contradiction, explain_data
@@ -307,9 +306,7 @@ class Guard:
             if found is not None and violated_row(cloud, found) is None:
                 self.solved, self.signs = found, found.signs
                 return self.make_plan(at, found, cloud)
-        support = moved_basis(self.basis, memory.rows, memory.first)
-        if kept:
-            support = cheaper_start(cloud, target, [self.basis, support])
+        support = moved_basis(self.basis, memory.rows, memory.first) or (self.basis if kept else [])
         found = exchange(cloud, target, support) if support else None
         if found is None:
             start = cloud.start() or []
@@ -476,20 +473,6 @@ def moved_basis(basis: Sequence[int], rows: Sequence[Row], first: int) -> list[i
             k += 1
         moved.append(k if k < len(rows) else i)
     return moved if len(set(moved)) == len(moved) and min(moved, default=0) >= first else []
-
-
-def cheaper_start(cloud: Cloud, target: arb_mat, starts: Sequence[Sequence[int]]) -> Sequence[int]:
-    """The support that costs least, as doubles see it; empty where none is independent."""
-    functional, best, least = to_doubles(target), starts[0][:0], np.inf
-    for start in starts:
-        try:
-            weights = np.linalg.solve(cloud.scaled[np.array(start) - cloud.first].T, functional) if start else np.inf
-        except np.linalg.LinAlgError:
-            continue
-        cost = np.abs(weights).sum()
-        if cost < least:
-            best, least = start, cost
-    return best
 
 
 def whole_number(value: Any, low: int, high: int, where: str) -> int:
