@@ -186,7 +186,7 @@ SLOTS: dict[str, frozenset[str]] = {
         ("function_call", "name arguments argument * ( )"), ("if_expression", "if condition consequence alternative"),
         ("if_statement", "if condition consequence alternative : * , ; end endif NL"), ("index_expression", "* [ ]"),
         ("init_declarator", "declarator = value"), ("iterator", "* ="),
-        ("let_declaration", "let mutable_specifier pattern : type = value ;"), ("matrix", "* [ ] ;"),
+        ("let_declaration", "let mutable_specifier pattern : type = value else alternative ;"), ("matrix", "* [ ] ;"),
         ("not_operator", "* not argument ~ !"), ("pointer_declarator", "declarator * type_qualifier"),
         ("pointer_expression", "operator argument"), ("postfix_operator", "operand ' .'"),
         ("qualified_identifier scoped_identifier", "scope path :: name"),
