@@ -296,9 +296,6 @@ class Reader(SourceReader):
     def branch(self, node: Any) -> Part:
         test = field_of(node, "condition")
         value = field_of(test, "value") or next(iter(named(test)), None)
-        is_other = field_of(test, "initializer") is not None or any(text_of(c) == "constexpr" for c in node.children)
-        if value is None or is_other:
-            return self.unread(node, "a condition outside the language of audit")
         then, other = self.block(field_of(node, "consequence")), self.block(field_of(node, "alternative"))
         return self.part("if", node, self.expression(value), then, other)
 

@@ -170,8 +170,6 @@ class Reader(SourceReader):
                 return (self.chain(node, node.children_by_field_name("alternative")),)
             case "for_statement":
                 return (self.loop(node),)
-            case "while_statement" if field_of(node, "alternative") is not None:
-                return (self.unread(node, "a loop with an else"),)
             case "assert_statement" if not any(inner.type == "named_expression" for inner in descend(node)):
                 calls = (inner for inner in descend(node) if inner.type == "call")
                 return tuple(self.part("do", call, self.expression(call)) for call in calls)
@@ -184,8 +182,6 @@ class Reader(SourceReader):
     def loop(self, node: Any) -> Part:
         """``for i in range(...)``."""
         name, source = field_of(node, "left"), self.expression(field_of(node, "right"))
-        if field_of(node, "alternative") is not None:
-            return self.unread(node, "a loop with an else")
         is_range = source.kind == "call" and source.parts[0] == "range" and 1 <= len(source.parts[1]) <= 3
         if name.type != "identifier" or not is_range:
             return self.unread(node, "a loop over something else than a range")

@@ -112,6 +112,22 @@ def identifiers_in(node: Any) -> tuple[str, ...]:
     return tuple(dict.fromkeys(text_of(inner) for inner in descend(node) if inner.type in kinds))
 
 
+def find_odd(node: Any) -> str:
+    """The kind of something below a node that nobody reads; nothing where all is read."""
+    known = SLOTS.get(node.type, frozenset())
+    for i, child in enumerate(node.children):
+        slot = node.field_name_for_child(i) or child.type.replace("\n", "NL")
+        if (
+            child.type not in COMMENTS
+            and slot not in known
+            and not ("*" in known and child.is_named and slot == child.type)
+        ):
+            return str(child.type).replace("_", " ")
+        if child.type in INNER and (odd := find_odd(child)):
+            return odd
+    return ""
+
+
 def read_decimal(text: str) -> Fraction | None:
     """The exact value of decimal digits, with a point and an exponent of at most three digits; None for others."""
     return Fraction(text) if len(text) <= 60 and DECIMAL.fullmatch(text) else None
@@ -142,6 +158,55 @@ OPERATORS: dict[str, tuple[str, ...]] = {
     **dict.fromkeys(("||", "or"), ("either",)),
 }
 UNARY = {"-": "minus", "!": "not", "not": "not"}
+
+#: What each node of the grammars may have below it: fields, signs and words, and "*" for parts that are all read. A
+#: node that is read and has anything else below it is refused, as an ``else`` behind a loop, or an attribute.
+SLOTS: dict[str, frozenset[str]] = {
+    kind: frozenset(slots.split())
+    for kinds, slots in (
+        ("argument_list arguments parenthesized_expression parenthesis", "* argument ( ) ,"),
+        ("array_declarator", "declarator size [ ]"), ("array_expression", "* [ ] , ; length"),
+        ("assert_statement", "* assert ,"), ("assignment", "left right type = :"),
+        ("assignment_expression", "left operator right ="), ("attribute", "object . attribute"),
+        ("augmented_assignment compound_assignment_expr", "left operator right"),
+        ("binary_expression", "left operator right"), ("boolean_operator", "left operator right && ||"),
+        ("binary_operator", "left operator right + - * / ^ .* ./ .^ & |"),
+        ("call call_expression", "function arguments"), ("cast_expression", "( type value )"),
+        ("comma_expression", "left , right"), ("comparison_operator", "* operators < <= > >= == ~= !="),
+        ("compound_statement block initializer_list", "* { } , ;"), ("condition_clause", "( value )"),
+        ("conditional_expression", "condition ? consequence : alternative * if else"),
+        ("const_item", "const name : type = value ; visibility_modifier"),
+        ("declaration", "storage_class_specifier type_qualifier type declarator , ;"),
+        ("do_statement", "do body while condition ;"), ("elif_clause", "elif condition : consequence"),
+        ("else_clause", "else * body"), ("elseif_clause", "elseif condition * , ; NL"), ("end_keyword", "end"),
+        ("expression_list tuple list row pattern_list", "* , ( ) [ ]"), ("expression_statement", "* ;"),
+        ("field_expression", "argument operator field value . object *"),
+        ("for_expression", "for pattern in value body"),
+        ("for_statement", "for ( initializer ; condition update ) body left in right : iterator , end endfor NL *"),
+        ("function_call", "name arguments argument * ( )"), ("if_expression", "if condition consequence alternative"),
+        ("if_statement", "if condition consequence alternative : * , ; end endif NL"), ("index_expression", "* [ ]"),
+        ("init_declarator", "declarator = value"), ("iterator", "* ="),
+        ("let_declaration", "let mutable_specifier pattern : type = value else alternative ;"), ("matrix", "* [ ] ;"),
+        ("not_operator", "* not argument ~ !"), ("pointer_declarator", "declarator * type_qualifier"),
+        ("pointer_expression", "operator argument"), ("postfix_operator", "operand ' .'"),
+        ("qualified_identifier scoped_identifier", "scope path :: name"),
+        ("range range_expression", "* : .. ..= ( )"), ("reference_expression", "& mutable_specifier value"),
+        ("return_expression return_statement", "return * ; ,"), ("slice", "* :"), ("string", "*"),
+        ("subscript", "value [ subscript , ]"), ("subscript_argument_list", "* [ ] ,"),
+        ("subscript_expression", "argument [ index indices ]"),
+        ("switch_statement", "switch * condition body , ; end endswitch NL"),
+        ("type_cast_expression", "value as type"), ("type_descriptor", "type type_qualifier"),
+        ("unary_expression unary_operator update_expression", "operator argument operand * - + ! ~"),
+        ("while_expression", "while condition body"),
+        ("while_statement", "while condition : body * , ; end endwhile ( ) NL"),
+    )
+    for kind in kinds.split()
+}  # fmt: skip
+#: Parts that are read together with what is above them.
+INNER = frozenset(
+    "argument_list arguments array_declarator condition_clause init_declarator iterator pattern_list "
+    "pointer_declarator range_expression subscript_argument_list type_descriptor".split()
+)
 
 
 @dataclass(slots=True, eq=False)
@@ -186,7 +251,9 @@ class SourceReader:
         if node.has_error and node.type not in self.OPEN:
             return (self.unread(node, "a syntax error, or a macro that hides one"),)
         several: tuple[Part, ...] | None = self.read_statement(node)
-        return self.read_common(node) if several is None else several
+        several = self.read_common(node) if several is None else several
+        is_read = any(part.kind not in ("unread", "jump", "fail") for part in several)
+        return (self.unread(node, f"{odd} in a statement"),) if is_read and (odd := find_odd(node)) else several
 
     def read_common(self, node: Any) -> tuple[Part, ...]:
         """What most languages have, by its kinds in their grammars."""
@@ -219,6 +286,8 @@ class SourceReader:
             return self.refuse(node, "a syntax error")
         found = self.read_expression(node) or self.read_plain(node)
         kind = node.type.replace("_", " ")
+        if found is not None and found.kind != "refused" and (odd := find_odd(node)):
+            return self.refuse(node, f"{odd} in an expression")
         return self.refuse(node, f"an expression outside the language of audit ({kind})") if found is None else found
 
     def read_plain(self, node: Any) -> Part | None:
