@@ -1,8 +1,13 @@
 """One small switching model, run exactly: scalar state, two modes, expressions in place of numbers."""
 
+from dataclasses import dataclass
+from fractions import Fraction
+
 import sympy as sp
 from flint import arb, ctx, fmpq
 
+from navsym.claims import state
+from navsym.language.expression import to_text
 from navsym.multimodel.exact import ExactStep, Kit, Leaf, Model, run_exactly
 from navsym.multimodel.schemes import scheme
 
@@ -40,25 +45,82 @@ def common_start(mean, variance) -> list[Leaf]:
     return [Leaf((HALF, HALF), [sp.Rational(mean)], [[sp.Rational(variance)]])]
 
 
-def in_balls(matrix):
-    return [[ball(value) for value in row] for row in matrix]
+def convert(number, models, transitions, measurements, roots) -> tuple:
+    """What :func:`run_exactly` takes, in another kind of numbers."""
+    rows = [[Model(*([[number(value) for value in part[0]]] for part in parts_of(m))) for m in row] for row in models]
+    switches = [[[number(value) for value in row] for row in matrix] for matrix in transitions]
+    return rows, switches, roots, [[number(sp.Integer(value)) for value in row] for row in measurements]
 
 
-def enclosures(method, models, transitions, measurements, *, depth=None) -> list[arb]:
-    """Balls around the estimates of the scalar state after every step."""
+def parts_of(model: Model) -> tuple:
+    return model.F, model.Q, model.H, model.R
+
+
+def enclosures(models, transitions, measurements, period) -> list[ExactStep]:
+    """Steps in balls of a filter that folds after every ``period`` steps."""
     before, ctx.prec = ctx.prec, BITS
     try:
-        steps = run_exactly(
-            scheme(method, depth),
-            [[Model(*map(in_balls, (m.F, m.Q, m.H, m.R))) for m in row] for row in models],
-            [in_balls(matrix) for matrix in transitions],
-            [Leaf((arb(1) / 2, arb(1) / 2), [arb(0)], [[arb(1)]])],
-            [[arb(value) for value in row] for row in measurements],
-            BALLS,
+        roots = [Leaf((arb(1) / 2, arb(1) / 2), [arb(0)], [[arb(1)]])]
+        return run_exactly(
+            scheme("k-pulsating", period), *convert(ball, models, transitions, measurements, roots), BALLS
         )
-        return [step.mean[0] for step in steps]
     finally:
         ctx.prec = before
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Estimate:
+    """The last estimate of a filter: a ball; a text; ranges of the symbols in it, and statements that these are met."""
+
+    ball: arb
+    text: str
+    box: dict[str, list]
+    said: list[dict]
+
+
+def estimate(models, transitions, measurements, period, tag="") -> Estimate:
+    """What a filter ends with that folds all hypotheses into one Gaussian after every ``period`` steps.
+
+    The numbers of that Gaussian are enclosed, wider from fold to fold, and are symbols in the next steps. Weights are
+    not divided by their sum before a fold.
+    """
+    found, folded, box, said = enclosures(models, transitions, measurements, period), (), {}, []
+    leaves, unit = common_start(0, 1), Fraction(1, 10**13)
+    for k in range(len(measurements)):
+        step_of = slice(k, k + 1)
+        given = convert(sp.sympify, models[step_of], transitions[step_of], measurements[step_of], leaves)
+        (step,) = run_exactly(scheme("exact"), *given, EXPRESSIONS)
+        weights = [[x * step.likelihood for x in leaf.weights] for leaf in step.leaves]
+        leaves = [Leaf(tuple(w), leaf.mean, leaf.covariance) for w, leaf in zip(weights, step.leaves, strict=True)]
+        last = k + 1 == len(measurements)
+        if (k + 1) % period and not last:
+            continue
+        folded = [to_text(value) for value in fold(leaves)]
+        if last:
+            return Estimate(found[-1].mean[0], folded[1], box, said)
+        balls, symbols = found[k], sp.symbols(f"g{tag}{k} X{tag}{k} P{tag}{k}", real=True)
+        own, ranges = (balls.probabilities[0], balls.mean[0], balls.covariance[0][0]), {}
+        for symbol, text, value in zip(symbols, folded, own, strict=True):
+            low = int((value / ball(unit)).floor().unique_fmpz()) * unit
+            ends = str(low - unit), str(low + 2 * unit)
+            ranges[symbol.name] = [*ends, []]
+            said += [state(ends[0], "<=", text, box), state(text, "<=", ends[1], box)]
+        g, X, P = symbols
+        unit *= 100_000
+        box, leaves = ranges, [Leaf((g, 1 - g), [X], [[P]])]
+    raise ValueError("no measurements")
+
+
+def fold(leaves: list[Leaf]) -> tuple:
+    """The share of the first mode, mean and variance of a sum of Gaussians."""
+    rows = [(sum(leaf.weights), leaf.mean[0], leaf.covariance[0][0]) for leaf in leaves]
+    whole = sum(w for w, _, _ in rows)
+    mean = sum(w * x for w, x, _ in rows) / whole
+    return (
+        sum(leaf.weights[0] for leaf in leaves) / whole,
+        mean,
+        sum(w * (v + (x - mean) ** 2) for w, x, v in rows) / whole,
+    )
 
 
 def run(method, models, transitions, measurements, *, depth=None, kit=EXPRESSIONS) -> list[ExactStep]:
