@@ -12,10 +12,10 @@ from navsym.models.linear import LinearModel
 from navsym.observability.chains import prove_rank
 from navsym.observability.sensors import Restoration, restore_observability
 from navsym_papers.joint_correction.inertial import EARTH, MU, OMEGA, full_model, joint_model
-from navsym_papers.joint_correction.section1_systems import say_ranks
+from navsym_papers.joint_correction.matrices import write_matrix
+from navsym_papers.joint_correction.section1_systems import say_ranks, seen_at_once
 
 GENERIC = "all values of mu, omega and u but those of a proper algebraic set"
-ANY_ROW = "that no fewer rows are enough is said of all rows at once"
 METHOD = "hidden directions that are exhibited, and minors that are not zero"
 
 
@@ -87,15 +87,33 @@ def no_two_are_enough():
 @claim("sensors.position")
 def position_needs_exactly_two_variables():
     """With position alone two measurements are missing, and x_3 and x_6 are the only two variables that will do."""
-    answer = restore_observability(measured_by(("sigma_M1", "sigma_M2")))
-    return Property((2, (("x_3", "x_6"),)), found(answer, (answer.needed, answer.sets)), unsaid=ANY_ROW)
+    model = measured_by(("sigma_M1", "sigma_M2"))
+    answer = restore_observability(model)
+    both = [model.states.index(name) for name in ("x_3", "x_6")]
+    rows = model.F.col_join(model.H)
+    symbols = {s.name: [None, None, []] for s in rows.free_symbols}
+    still = write_matrix(rows.extract(list(range(rows.rows)), both)), "=", write_matrix(sp.zeros(rows.rows, 2)), symbols
+    return say_missing((2, (("x_3", "x_6"),)), found(answer, (answer.needed, answer.sets)), model, both, still)
+
+
+def say_missing(printed: object, finding: Finding, model: LinearModel, places: list[int], *more: tuple) -> Property:
+    """That as many rows are missing as there are places of states, and that these states will do.
+
+    What F and H both send to zero stays where it is and is not seen. Another row sees one dimension of it at most.
+    """
+    rows = [row for row in (model.F.row(k) for k in range(model.size)) if any(row)]
+    seen = LinearModel(model.F, None, model.H.col_join(sp.eye(model.size).extract(places, list(range(model.size)))))
+    still = seen_at_once(sp.Matrix.vstack(*rows, model.H))
+    return say_ranks(printed, finding, [(still, model.size - len(places)), (seen, model.size)], *more)
 
 
 @claim("sensors.full")
 def complete_model_needs_five():
     """With all constant errors kept and u frozen, five more measurements are needed, and five states will do."""
-    answer = restore_observability(full_model())
-    return Property((5, 5), found(answer, (answer.needed, answer.fewest)), unsaid=ANY_ROW)
+    model = full_model()
+    answer = restore_observability(model)
+    places = [model.states.index(name) for name in answer.sets[0]]
+    return say_missing((5, 5), found(answer, (answer.needed, answer.fewest)), model, places)
 
 
 PRIME = 2**61 - 1

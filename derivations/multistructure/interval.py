@@ -11,6 +11,7 @@ import sympy as sp
 from flint import arb, arb_series, ctx, fmpq, fmpq_poly
 
 from navsym.claims import CERTIFIED, PROVED, Finding, Property, certify_at_sight, claim, fact, state
+from navsym.language.expression import to_text
 from navsym.multimodel.exact import Kit, Leaf, Model, run_exactly
 from navsym.multimodel.schemes import filters_at, scheme
 from navsym_papers.multistructure import examples
@@ -241,7 +242,19 @@ def lossless_fold():
     method = "leaves of the exact tree compared as rational numbers"
     scope = "this model, every series of measurements: gains do not depend on them"
     evidence = "the four leaves of step 2 are one Gaussian, so the fold of K = 2 changes nothing"
-    return fact((4, 1), (len(leaves), len(second)), method, PROVED, scope=scope, evidence=evidence, unsaid=RUN)
+    unknown = sp.symbols("y1:3 g1:4", real=True)
+    leaves_of_any = examples.run("exact", LATE, SWITCHING, [[y] for y in unknown[:2]], kit=examples.ANY_DENSITY)[
+        1
+    ].leaves
+    rows = [(leaf.mean[0], leaf.covariance[0][0]) for leaf in leaves_of_any]
+    shares = [*unknown[2:], 1 - sum(unknown[2:])]
+    mean = sum(w * x for w, (x, _) in zip(shares, rows, strict=True))
+    variance = sum(w * (v + (x - mean) ** 2) for w, (x, v) in zip(shares, rows, strict=True))
+    symbols = {s.name: [None, None, []] for s in unknown}
+    sides = (f"[{', '.join(map(to_text, row))}]" for row in ((mean, variance) * 4, [x for row in rows for x in row]))
+    left, right = sides
+    meaning = [state(left, "=", right, symbols)]
+    return fact((4, 1), (len(leaves), len(second)), method, PROVED, scope=scope, evidence=evidence, meaning=meaning)
 
 
 @claim("K.longer", expect=CERTIFIED)

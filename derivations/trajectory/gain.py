@@ -46,9 +46,13 @@ def say_stable(scale: list[str], fifth: tuple[Fraction, Fraction] = (GAIN[4], RO
 
     With z = (1 + w)/(1 - w) it is a polynomial in w over (1 - w)^5, whose roots have to lie left of the imaginary axis.
     """
-    n, coefficients = len(scale), write_half_plane(scale)
     gains = [*zip(GAIN[:4], ROUNDING, strict=False), fifth]
-    box = {f"k{i}": [str(k - w), str(k + w), []] for i, (k, w) in enumerate(gains, start=1)}
+    return say_stable_within(scale, {f"k{i}": [str(k - w), str(k + w), []] for i, (k, w) in enumerate(gains, start=1)})
+
+
+def say_stable_within(scale: list[str], box: dict[str, list]) -> tuple[dict, ...]:
+    """:func:`say_stable` for other ranges of the gains."""
+    n, coefficients = len(scale), write_half_plane(scale)
     Phi = write_rows(pascal_rows(n))
     gain = write_rows([[f"k{i}/({text})"] for i, text in enumerate(scale, start=1)])
     left = f"det((1 + w)*eye({n}) - (1 - w)*({Phi} - {gain} @ {write_rows([[1] * n])}))"
@@ -56,6 +60,7 @@ def say_stable(scale: list[str], fifth: tuple[Fraction, Fraction] = (GAIN[4], RO
     return state(left, "=", right, box | {"w": [None, None, []]}), *say_signs(coefficients, box)
 
 
+METRIC = [str(math.factorial(j) / TAU**j) for j in range(5)]
 NORMALISED = [f"sqrt({sum(i ** (2 * j) for i in range(1, 6))})" for j in range(5)]
 #: The printed K_5 with one exponent less.
 SMALLER = GAIN[4] / 10, ROUNDING[4] / 10
@@ -72,9 +77,7 @@ constant_gain_in_normalised_variables = claim(
 constant_gain_in_metric_variables = claim(
     "experiment.gain*",
     "With the printed constant gain in the variables D_p x (metres, m/s, ...) the algorithm is stable.",
-    lambda: Property(
-        True, stability(metric_scale(5, TAU)), say_stable([str(math.factorial(j) / TAU**j) for j in range(5)])
-    ),
+    lambda: Property(True, stability(metric_scale(5, TAU)), say_stable(METRIC)),
     expect=CERTIFIED,
 )
 constant_gain_of_another_exponent = claim(
@@ -134,7 +137,7 @@ def yawing_lag(state: int, digits: int) -> Finding:
 
 
 def say_lag(state_: int, low: str, high: str) -> tuple[dict, ...]:
-    """The same between two numbers: the text below it is not above the second, and that above it not below the first."""
+    """What a lag between two numbers makes of its bounds, and by which bounds it lies there: two statements each."""
     rate, lag = f"100*(2*pi/360)**{state_ - 2}", write_lag(in_f(GAIN), "pi/900", state_)
     below, above = (f"{rate}*{amplitude}*{lag}" for amplitude in write_bessel(1))
     return state(below, "<=", high), state(low, "<=", above), state(above, "<=", high), state(low, "<=", below)
