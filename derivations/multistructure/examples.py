@@ -131,3 +131,8 @@ def run(method, models, transitions, measurements, *, depth=None, kit=EXPRESSION
 STICKY = [[sp.Rational(9, 10), sp.Rational(1, 10)], [sp.Rational(1, 10), sp.Rational(9, 10)]]
 #: Nominal against a jump of the state.
 CALM, JUMP = scalar(1, 0, 1, 1), scalar(1, 25, 1, 1)
+
+
+def list_leaves(leaves) -> str:
+    """Weights, means and variances of hypotheses as a text."""
+    return f"[{', '.join(str(x) for leaf in leaves for x in (*leaf.weights, leaf.mean[0], leaf.covariance[0][0]))}]"
