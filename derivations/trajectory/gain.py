@@ -103,12 +103,17 @@ def stationary_deviation(state: int, digits: int) -> Finding:
 
 def say_stationary(low: str, high: str) -> tuple[dict, ...]:
     """That P is stationary, P = C P C' + K K', and the root of its first entry lies between two numbers."""
-    gain = in_f(GAIN)
-    P, Phi = stationary_covariance(gain), pascal_rows(len(gain))
+    P = stationary_covariance(in_f(GAIN))
+    deviation = f"sqrt({P[0][0]})"
+    return say_still(P, in_f(GAIN)), state(low, "<=", deviation), state(deviation, "<=", high)
+
+
+def say_still(P: list[list[Fraction]], drive: list[Fraction]) -> dict:
+    """That P = C P C' + d d' with C of the printed gain."""
+    gain, Phi = in_f(GAIN), pascal_rows(len(GAIN))
     C = write_rows([[entry - k for entry in row] for row, k in zip(Phi, gain, strict=True)])
-    K, deviation = write_rows([[k] for k in gain]), f"sqrt({P[0][0]})"
-    moved = f"{C} @ {write_rows(P)} @ {C}.T + {K} @ {K}.T"
-    return state(write_rows(P), "=", moved), state(low, "<=", deviation), state(deviation, "<=", high)
+    d = write_rows([[k] for k in drive])
+    return state(write_rows(P), "=", f"{C} @ {write_rows(P)} @ {C}.T + {d} @ {d}.T")
 
 
 def decimals(value: flint.arb, digits: int) -> str:

@@ -199,10 +199,11 @@ def metric_scale(n: int, tau: Fraction) -> list[flint.arb]:
 # -- exact response ----------------------------------------------------------------------------------------
 
 
-def stationary_covariance(gain: Sequence[Fraction]) -> list[list[Fraction]]:
+def stationary_covariance(gain: Sequence[Fraction], drive: Sequence[Fraction] | None = None) -> list[list[Fraction]]:
     """Covariance of the error of f under white measurement noise of variance one, exact, (n, n).
 
-    Solves P = C P C^T + k k^T with C = Phi - k h over the rationals; C has to be stable.
+    Solves P = C P C^T + k k^T with C = Phi - k h over the rationals; C has to be stable. Another ``drive`` d gives the
+    sum of all C^l d d^T C^lT.
     """
     n = len(gain)
     Phi = pascal_rows(n)
@@ -214,7 +215,7 @@ def stationary_covariance(gain: Sequence[Fraction]) -> list[list[Fraction]]:
             for k in range(n):
                 for m in range(n):
                     system[(i * n + j) * size + k * n + m] -= C[i][k] * C[j][m]
-    right = [gain[i] * gain[j] for i in range(n) for j in range(n)]
+    right = [a * b for a in drive or gain for b in drive or gain]
     solved = rational(size, size, system).solve(rational(size, 1, right))
     return [[back(solved[i * n + j, 0]) for j in range(n)] for i in range(n)]
 
