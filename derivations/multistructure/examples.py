@@ -4,9 +4,10 @@ from dataclasses import dataclass
 from fractions import Fraction
 
 import sympy as sp
-from flint import arb, ctx, fmpq
+from flint import arb
 
 from navsym.claims import state
+from navsym.core.balls import enclose, exact_ball, hull
 from navsym.language.expression import to_text
 from navsym.multimodel.exact import ExactStep, Kit, Leaf, Model, run_exactly
 from navsym.multimodel.schemes import scheme
@@ -23,17 +24,6 @@ EXPRESSIONS = Kit(
 #: For what needs nothing of (18), since equal models have equal densities: any function of the residual will do.
 ANY_DENSITY = Kit(density=lambda distance, determinant, p: 1 / (determinant * (1 + distance)), tidy=sp.cancel)
 
-#: The same in balls, for what only has to be told apart.
-BALLS = Kit(
-    density=lambda distance, determinant, p: (-distance / 2).exp() / determinant.sqrt(), tidy=lambda value: value
-)
-BITS = 400
-
-
-def ball(value) -> arb:
-    """A rational number as a ball."""
-    return arb(fmpq(value.numerator, value.denominator)) if not isinstance(value, arb) else value
-
 
 def scalar(F, Q, H, R) -> Model:
     """A mode of a scalar state."""
@@ -43,29 +33,6 @@ def scalar(F, Q, H, R) -> Model:
 def common_start(mean, variance) -> list[Leaf]:
     """Both modes equally likely, one Gaussian."""
     return [Leaf((HALF, HALF), [sp.Rational(mean)], [[sp.Rational(variance)]])]
-
-
-def convert(number, models, transitions, measurements, roots) -> tuple:
-    """What :func:`run_exactly` takes, in another kind of numbers."""
-    rows = [[Model(*([[number(value) for value in part[0]]] for part in parts_of(m))) for m in row] for row in models]
-    switches = [[[number(value) for value in row] for row in matrix] for matrix in transitions]
-    return rows, switches, roots, [[number(sp.Integer(value)) for value in row] for row in measurements]
-
-
-def parts_of(model: Model) -> tuple:
-    return model.F, model.Q, model.H, model.R
-
-
-def enclosures(models, transitions, measurements, period) -> list[ExactStep]:
-    """Steps in balls of a filter that folds after every ``period`` steps."""
-    before, ctx.prec = ctx.prec, BITS
-    try:
-        roots = [Leaf((arb(1) / 2, arb(1) / 2), [arb(0)], [[arb(1)]])]
-        return run_exactly(
-            scheme("k-pulsating", period), *convert(ball, models, transitions, measurements, roots), BALLS
-        )
-    finally:
-        ctx.prec = before
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -84,31 +51,27 @@ def estimate(models, transitions, measurements, period, tag="") -> Estimate:
     The numbers of that Gaussian are enclosed, wider from fold to fold, and are symbols in the next steps. Weights are
     not divided by their sum before a fold.
     """
-    found, folded, box, said = enclosures(models, transitions, measurements, period), (), {}, []
-    leaves, unit = common_start(0, 1), Fraction(1, 10**13)
-    for k in range(len(measurements)):
-        step_of = slice(k, k + 1)
-        given = convert(sp.sympify, models[step_of], transitions[step_of], measurements[step_of], leaves)
+    leaves, unit, box, values, said = common_start(0, 1), Fraction(1, 10**13), {}, {}, []
+    for k, row in enumerate(measurements, start=1):
+        given = [models[k - 1]], [transitions[k - 1]], leaves, [[sp.Integer(value) for value in row]]
         (step,) = run_exactly(scheme("exact"), *given, EXPRESSIONS)
         weights = [[x * step.likelihood for x in leaf.weights] for leaf in step.leaves]
         leaves = [Leaf(tuple(w), leaf.mean, leaf.covariance) for w, leaf in zip(weights, step.leaves, strict=True)]
-        last = k + 1 == len(measurements)
-        if (k + 1) % period and not last:
+        if k % period and k < len(measurements):
             continue
-        folded = [to_text(value) for value in fold(leaves)]
-        if last:
-            return Estimate(found[-1].mean[0], folded[1], box, said)
-        balls, symbols = found[k], sp.symbols(f"g{tag}{k} X{tag}{k} P{tag}{k}", real=True)
-        own, ranges = (balls.probabilities[0], balls.mean[0], balls.covariance[0][0]), {}
-        for symbol, text, value in zip(symbols, folded, own, strict=True):
-            low = int((value / ball(unit)).floor().unique_fmpz()) * unit
+        folded = fold(leaves)
+        balls, texts = [enclose(value, values) for value in folded], [*map(to_text, folded)]
+        if k == len(measurements):
+            break
+        g, X, P = symbols = sp.symbols(f"g{tag}{k} X{tag}{k} P{tag}{k}", real=True)
+        before, box, values = box, {}, {}
+        for symbol, text, value in zip(symbols, texts, balls, strict=True):
+            low = int((value.mid() / exact_ball(unit)).floor().unique_fmpz()) * unit
             ends = str(low - unit), str(low + 2 * unit)
-            ranges[symbol.name] = [*ends, []]
-            said += [state(ends[0], "<=", text, box), state(text, "<=", ends[1], box)]
-        g, X, P = symbols
-        unit *= 100_000
-        box, leaves = ranges, [Leaf((g, 1 - g), [X], [[P]])]
-    raise ValueError("no measurements")
+            box[symbol.name], values[symbol] = [*ends, []], hull(*map(sp.Rational, ends))
+            said += [state(ends[0], "<=", text, before), state(text, "<=", ends[1], before)]
+        unit, leaves = unit * 100_000, [Leaf((g, 1 - g), [X], [[P]])]
+    return Estimate(balls[1], texts[1], box, said)
 
 
 def fold(leaves: list[Leaf]) -> tuple:
