@@ -11,7 +11,7 @@ from typing import Any
 
 import sympy as sp
 
-from navsym.claims import Finding, Property, state
+from navsym.claims import Finding, Property, certify_at_sight, state
 from navsym.models.linear import LinearModel
 from navsym.observability.certificates import Certifier
 from navsym.observability.chains import JointObservability, observe_jointly
@@ -29,7 +29,7 @@ def say_ranks(
     """A property that follows from ranks, which the checker grants one by one, and from relations between them.
 
     ranks     : models with the rank that all their measurements show together
-    relations : what :func:`state` takes, true at 1; a matrix on the right stands there by entries
+    relations : what :func:`state` takes, seen to hold at sight
     """
     parts = []
     for model, rank in ranks:
@@ -38,11 +38,8 @@ def say_ranks(
         if part is None:
             return Property(printed, finding, unsaid="a rank has no certificate")
         parts.append(part)
-    meaning = [part["statement"] for part in parts] + [state(*relation) for relation in relations]
-    for text in meaning[len(parts) :]:
-        rule = {"rule": "identity"} if text["relation"] == "=" else {"rule": "balls", "bits": 64, "cells": 0}
-        witness, rules = dict.fromkeys(text["symbols"], "1"), [rule] * (1 + text["right"].count(","))
-        parts.append({"kind": "proof", "statement": text, "bits": 128, "witness": witness, "proofs": rules})
+    parts += [certify_at_sight(state(*relation)) for relation in relations]
+    meaning = [part["statement"] for part in parts]
     certificate = parts[0] if len(parts) == 1 else {"kind": "all", "of": parts}
     return Property(printed, replace(finding, certificate=certificate), tuple(meaning))
 

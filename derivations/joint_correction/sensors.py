@@ -7,15 +7,15 @@ from itertools import combinations
 import flint
 import sympy as sp
 
-from navsym.claims import PROVED, Finding, Property, claim, fact
+from navsym.claims import PROVED, Finding, Property, claim
 from navsym.models.linear import LinearModel
 from navsym.observability.chains import prove_rank
 from navsym.observability.sensors import Restoration, restore_observability
 from navsym_papers.joint_correction.inertial import EARTH, MU, OMEGA, full_model, joint_model
-from navsym_papers.joint_correction.section1_systems import say_ranks
+from navsym_papers.joint_correction.matrices import write_matrix
+from navsym_papers.joint_correction.section1_systems import say_ranks, seen_at_once
 
 GENERIC = "all values of mu, omega and u but those of a proper algebraic set"
-ANY_ROW = "that no fewer rows are enough is said of all rows at once"
 METHOD = "hidden directions that are exhibited, and minors that are not zero"
 
 
@@ -87,26 +87,43 @@ def no_two_are_enough():
 @claim("sensors.position")
 def position_needs_exactly_two_variables():
     """With position alone two measurements are missing, and x_3 and x_6 are the only two variables that will do."""
-    answer = restore_observability(measured_by(("sigma_M1", "sigma_M2")))
-    return Property((2, (("x_3", "x_6"),)), found(answer, (answer.needed, answer.sets)), unsaid=ANY_ROW)
+    model = measured_by(("sigma_M1", "sigma_M2"))
+    answer = restore_observability(model)
+    both = [model.states.index(name) for name in ("x_3", "x_6")]
+    rows = model.F.col_join(model.H)
+    symbols = {s.name: [None, None, []] for s in rows.free_symbols}
+    still = write_matrix(rows.extract(list(range(rows.rows)), both)), "=", write_matrix(sp.zeros(rows.rows, 2)), symbols
+    return say_missing((2, (("x_3", "x_6"),)), found(answer, (answer.needed, answer.sets)), model, both, still)
+
+
+def say_missing(printed: object, finding: Finding, model: LinearModel, places: list[int], *more: tuple) -> Property:
+    """That as many rows are missing as there are places of states, and that these states will do.
+
+    What F and H both send to zero stays where it is and is not seen. Another row sees one dimension of it at most.
+    """
+    rows = [row for row in (model.F.row(k) for k in range(model.size)) if any(row)]
+    seen = LinearModel(model.F, None, model.H.col_join(sp.eye(model.size).extract(places, list(range(model.size)))))
+    still = seen_at_once(sp.Matrix.vstack(*rows, model.H))
+    return say_ranks(printed, finding, [(still, model.size - len(places)), (seen, model.size)], *more)
 
 
 @claim("sensors.full")
 def complete_model_needs_five():
     """With all constant errors kept and u frozen, five more measurements are needed, and five states will do."""
-    answer = restore_observability(full_model())
-    return Property((5, 5), found(answer, (answer.needed, answer.fewest)), unsaid=ANY_ROW)
+    model = full_model()
+    answer = restore_observability(model)
+    places = [model.states.index(name) for name in answer.sets[0]]
+    return say_missing((5, 5), found(answer, (answer.needed, answer.fewest)), model, places)
 
 
-PRIME = 2**61 - 1
 TURNS = 8  # derivatives of the measurements that are taken
 
 
-def ranks_while_turning() -> tuple[int, ...]:
-    """Ranks, modulo a prime, of velocity, position and both, with derivatives, while u turns in the frame.
+def rows_while_turning() -> list[sp.Matrix]:
+    """Independent rows of velocity, position and both, with derivatives, while u turns in the frame.
 
     u' = -mu omega x u makes the model time-varying: a row h is followed by h F + h'. Entries are Taylor coefficients
-    at one point, omega constant. A rank modulo a prime is at most the rank itself.
+    at one point, omega constant.
     """
     model = full_model()
     values = dict(zip((MU, *OMEGA), (2, 3, 5, 7), strict=True))
@@ -117,10 +134,10 @@ def ranks_while_turning() -> tuple[int, ...]:
     time = sp.Symbol("time")
     path = {**values, **{u: sum(c[k] * time**n for n, c in enumerate(series)) for k, u in enumerate(EARTH)}}
 
-    def expand(entry: sp.Expr) -> list[int]:
+    def expand(entry: sp.Expr) -> list[flint.fmpq]:
         poly = sp.Poly(entry.subs(path), time)
         found = [sp.Rational(poly.coeff_monomial(time**n)) for n in range(TURNS + 1)]
-        return [int(c.p) * pow(int(c.q), -1, PRIME) % PRIME for c in found]
+        return [flint.fmpq(int(c.p), int(c.q)) for c in found]
 
     F = {place: expand(entry) for place, entry in model.F.todok().items()}
     rows = [[expand(entry) for entry in model.H.row(k)] for k in range(model.H.rows)]
@@ -129,26 +146,34 @@ def ranks_while_turning() -> tuple[int, ...]:
         length = TURNS - step
         after = []
         for row in rows:
-            new = [[(n + 1) * entry[n + 1] % PRIME for n in range(length)] for entry in row]
+            new = [[(n + 1) * entry[n + 1] for n in range(length)] for entry in row]
             for (i, j), coefficients in F.items():
                 for n in range(length):
-                    new[j][n] = (new[j][n] + sum(row[i][m] * coefficients[n - m] for m in range(n + 1))) % PRIME
+                    new[j][n] += sum(row[i][m] * coefficients[n - m] for m in range(n + 1))
             after.append(new)
         rows = after
         start += [[entry[0] for entry in row] for row in rows]
     found = []
     for kept in ((0, 1), (2, 3), (0, 1, 2, 3)):
-        part = [row for place, row in enumerate(start) if place % 4 in kept]
-        found.append(flint.nmod_mat(len(part), model.size, [x for row in part for x in row], PRIME).rank())
-    return tuple(found)
+        basis: list[list] = []
+        for place, row in enumerate(start):
+            wider = [*basis, row]
+            if place % 4 in kept and flint.fmpq_mat(
+                len(wider), model.size, [x for own in wider for x in own]
+            ).rank() == len(wider):
+                basis = wider
+        found.append(sp.Matrix([[sp.Rational(int(x.p), int(x.q)) for x in row] for row in basis]))
+    return found
 
 
 @claim("sensors.full.turning")
 def complete_model_while_turning():
     """With u' = -mu omega x u velocity, position and both show at least 11, 9, 14 of 16 states; frozen 9, 9, 11."""
-    scope = "omega constant; measurements with eight derivatives, ranks at one point modulo a prime"
-    model = full_model()
+    scope = "omega constant; measurements with eight derivatives, ranks at one point"
+    model, turning = full_model(), rows_while_turning()
     parts = [LinearModel(model.F, None, model.H.extract(list(kept), list(range(16)))) for kept in ((0, 1), (2, 3))]
     frozen = tuple(prove_rank(part).rank for part in (*parts, model))
-    found = (ranks_while_turning(), frozen)
-    return fact(((11, 9, 14), (9, 9, 11)), found, METHOD, PROVED, scope=scope, unsaid="ranks from below alone")
+    printed = (11, 9, 14), (9, 9, 11)
+    finding = Finding((tuple(rows.rows for rows in turning), frozen), METHOD, PROVED, scope=scope)
+    models = (*map(seen_at_once, turning), *parts, model)
+    return say_ranks(printed, finding, zip(models, (*printed[0], *printed[1]), strict=True))

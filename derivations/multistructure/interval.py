@@ -5,20 +5,19 @@ of any other is that of the optimal one plus its mean square distance from it. A
 integrals of that distance; in the model below only the first step is measured, so they run over one number.
 """
 
-import functools
+import math
+from typing import NamedTuple
 
 import sympy as sp
-from flint import arb, arb_series, ctx, fmpq, fmpq_poly
+from flint import arb, fmpq, fmpq_mat, fmpq_poly
 
-from navsym.claims import CERTIFIED, PROVED, Finding, Property, claim, fact
+from navsym.claims import CERTIFIED, PROVED, Finding, Property, certify_at_sight, claim, fact, state
+from navsym.language.expression import to_text
 from navsym.multimodel.exact import Kit, Leaf, Model, run_exactly
 from navsym.multimodel.schemes import filters_at, scheme
 from navsym_papers.multistructure import examples
+from navsym_papers.multistructure.examples import list_leaves
 from navsym_papers.multistructure.pulsating import MODELS, SWITCHING, differs, leaves_by_tree, say_sequences
-
-RUN = "a program is run and what it does is counted"
-NO_FORM = "integrals over a measurement of ratios of Gaussian sums have no closed form"
-BALLS_RUN = "a filter is run in balls over several steps"
 
 
 @claim("count.K")
@@ -57,8 +56,6 @@ TURNING = (examples.scalar(1, 0, 1, 1), examples.scalar(-1, 0, 1, 9))
 #: Variances of the measurement under the two modes.
 GOOD, POOR = 2, 10
 STEPS = 4
-#: Half of the range of the measurement that is integrated in cells, and the width of a cell.
-REACH, WIDTH = 24, sp.Rational(1, 32)
 
 
 def rational(matrix):
@@ -93,66 +90,57 @@ def squared_distances():
     return [[(a - b) * (a - b) for a, b in zip(row, best, strict=True)] for row in found]
 
 
-def weight_and_density(y):
-    """w and half of the density times y^2: y a ball or a power series of balls."""
-    parts = [(-(y * y) / (2 * v)).exp() / (2 * arb.pi() * v).sqrt() / 2 for v in (arb(GOOD), arb(POOR))]
-    # w in the form that loses nothing where both densities vanish.
-    ratio = (-(y * y) * arb(fmpq(POOR - GOOD, 2 * GOOD * POOR))).exp() * arb(fmpq(POOR, GOOD)).sqrt()
-    return ratio / (ratio + 1), (parts[0] + parts[1]) * y * y
+#: The ratio r = sqrt(5) exp(-y^2/5) of the densities lies in (0, sqrt(5)]; t = r/SCALE.
+SCALE, DEGREE = fmpq(9, 4), 16
+#: How far a polynomial of t may be from what it stands for; the mean of y^2 under the poor sensor is POOR.
+ERROR = fmpq(1, 10**6)
 
 
-def value_of(polynomial, w):
-    """A rational polynomial at a ball or a series, by Horner's rule."""
-    total = w * 0
-    for c in reversed(polynomial.coeffs()):
-        total = total * w + arb(c)
-    return total
+class Mean(NamedTuple):
+    """The integral over y of polynomial(w) y^2 p(y) as a text and a ball, and statements that it is within ERROR."""
+
+    text: str
+    ball: arb
+    said: list[dict]
 
 
-def integrals(polynomials):
-    """Balls around the integrals over y of polynomial(w(y)) y^2 p(y).
+def mean_of(polynomial) -> Mean:
+    """By w = r/(1 + r), p = (1 + r)/2 times the poor density, and a polynomial of t in their place.
 
-    In a cell of width h about c the integral of f is h f(c) + h^3/24 f'' somewhere in the cell. Beyond REACH the
-    density is at most that of the wider sensor, and the squared distance at most y^2: every estimate is at most
-    y/2 in size, because |F| = 1 and the means of step 1 are y/2 and y/10.
+    The poor density times r^k is sqrt(5)^k/sqrt(1 + 4 k) times a Gaussian of the variance 10/(1 + 4 k).
     """
-    h, half = examples.ball(WIDTH), examples.ball(WIDTH / 2)
-    sums = [arb(0)] * len(polynomials)
-    cells = int(2 * REACH / WIDTH)
-    for odd in range(1 - cells, cells, 2):
-        centre = examples.ball(WIDTH * odd / 2)
-        w, scale = weight_and_density(centre)
-        around, bent = weight_and_density(arb_series([arb(centre.mid(), half), arb(1)], 3))
-        for k, polynomial in enumerate(polynomials):
-            bend = 2 * (value_of(polynomial, around) * bent)[2]
-            sums[k] += h * value_of(polynomial, w) * scale + h**3 / 24 * bend
-    ratio = arb(REACH) / arb(POOR).sqrt()
-    tail = 2 * POOR * (-ratio * ratio / 2).exp() / (2 * arb.pi()).sqrt() * (ratio + 1 / ratio)
-    return [value + arb(0, tail.abs_upper()) for value in sums]
+    degree, r = max(polynomial.degree(), 1), fmpq_poly([0, SCALE])
+    above = sum((c * r**k * (1 + r) ** (degree - k) for k, c in enumerate(polynomial.coeffs())), fmpq_poly([0]))
+    below = 2 * (1 + r) ** (degree - 1)
+    nodes = [fmpq(round(500 + 500 * math.cos(math.pi * (k + 0.5) / (DEGREE + 1))), 1000) for k in range(DEGREE + 1)]
+    rows = fmpq_mat(DEGREE + 1, DEGREE + 1, [x**k for x in nodes for k in range(DEGREE + 1)])
+    fit = rows.solve(fmpq_mat(DEGREE + 1, 1, [above(x) / below(x) for x in nodes]))
+    shares = [fmpq((fit[k, 0] * 10**9 + fmpq(1, 2)).floor(), 10**9) for k in range(DEGREE + 1)]
+    gap = above - fmpq_poly(shares) * below
+    sides = [
+        " + ".join(f"{c}*t**{k}" for k, c in enumerate(f.coeffs())) for f in (ERROR * below - gap, ERROR * below + gap)
+    ]
+    said = [state(side, ">=", "0", {"t": ["0", "1", []]}) for side in sides]
+    terms = [(f"({c / SCALE**k})", k) for k, c in enumerate(shares)]
+    text = " + ".join(f"{c}*sqrt(5)**{k}*{POOR}/sqrt({1 + 4 * k})**3" if k else f"{c}*{POOR}" for c, k in terms)
+    five = arb(5).sqrt()
+    ball = sum(arb(c / SCALE**k) * five**k * POOR / arb(1 + 4 * k).sqrt() ** 3 for k, c in enumerate(shares))
+    return Mean(text, ball + arb(0, ERROR * POOR), said)
 
 
-@functools.cache
-def mean_square_distances():
-    """Balls around the mean square distances of steps 1..STEPS: simplest filter, K = 2."""
-    before, ctx.prec = ctx.prec, 128
-    try:
-        one, two = squared_distances()
-        found = integrals([*one, *two])
-        return found[:STEPS], found[STEPS:]
-    finally:
-        ctx.prec = before
-
-
-METHOD = "integrals over the measurement by Taylor's formula in balls"
+METHOD = "polynomials of the ratio of densities, and moments of Gaussians"
 SCOPE = "one model: a sign that is kept or changed, one measurement, all its values"
+#: Of each mean.
+SPREAD = f"{ERROR * POOR}"
 
 
-def lower(first, second) -> Finding:
-    """Whether the first ball lies below the second; balls that overlap are an error, not an answer."""
-    if first.overlaps(second):
-        raise ArithmeticError("balls overlap: finer cells are needed")
-    evidence = f"{first.str(6)} with K = 2, {second.str(6)} with K = 1"
-    return Finding(bool(first < second), METHOD, status=CERTIFIED, scope=SCOPE, evidence=evidence)
+def compare(first: Mean, second: Mean, meaning: list[dict]) -> Property:
+    """Whether the first mean is below the second; balls that overlap are an error, not an answer."""
+    if first.ball.overlaps(second.ball):
+        raise ArithmeticError("balls overlap: more terms are needed")
+    evidence = f"{first.ball.str(6)} with K = 2, {second.ball.str(6)} with K = 1"
+    below = bool(first.ball < second.ball)
+    return fact(True, below, METHOD, CERTIFIED, scope=SCOPE, evidence=evidence, meaning=meaning)
 
 
 @claim(
@@ -164,23 +152,30 @@ def lower(first, second) -> Finding:
 )
 def longer_is_better():
     """K-pulsating gives the higher quality: in a model seen at step 1 the third estimate is nearer with K = 2."""
-    one, two = mean_square_distances()
-    return Property(printed=True, derived=lower(two[2], one[2]), unsaid=NO_FORM)
+    one, two = (mean_of(row[2]) for row in squared_distances())
+    return compare(two, one, [state(f"{two.text} - {SPREAD}", "<=", f"{one.text} + {SPREAD}")])
 
 
 @claim("K.better*", expect=CERTIFIED)
 def longer_is_better_on_average():
     """K-pulsating can be better: in a model seen at step 1 K = 2 beats K = 1 in the mean summed over steps 1 to 4."""
-    one, two = mean_square_distances()
-    return Property(printed=True, derived=lower(sum(two), sum(one)), unsaid=NO_FORM)
+    one, two = (mean_of(sum(row)) for row in squared_distances())
+    less = state(f"{two.text} + {SPREAD}", "<", f"{one.text} - {SPREAD}")
+    return compare(two, one, [*two.said, *one.said, less])
 
 
 def distances(step: int, *printed: int) -> Property:
     """Four decimals of the mean square distances of an estimate from the optimal one, K = 2 and K = 1."""
-    digits = [(10000 * found[step - 1] + arb(1) / 2).floor().unique_fmpz() for found in mean_square_distances()[::-1]]
+    means = [mean_of(row[step - 1]) for row in squared_distances()[::-1]]
+    digits = [(10000 * mean.ball + arb(1) / 2).floor().unique_fmpz() for mean in means]
     if None in digits:
-        raise ArithmeticError("a ball holds two numbers of four digits: finer cells are needed")
-    return fact(printed, tuple(map(int, digits)), f"{METHOD}, four decimals", CERTIFIED, scope=SCOPE, unsaid=NO_FORM)
+        raise ArithmeticError("a ball holds two numbers of four digits: more terms are needed")
+    meaning = []
+    for mean, four in zip(means, printed, strict=True):
+        ends = [fmpq(2 * four + sign, 20000) for sign in (-1, 1)]
+        meaning += [*mean.said, state(f"{ends[0]} + {SPREAD}", "<=", mean.text)]
+        meaning += [state(mean.text, "<=", f"{ends[1]} - {SPREAD}")]
+    return fact(printed, tuple(map(int, digits)), f"{METHOD}, four decimals", CERTIFIED, scope=SCOPE, meaning=meaning)
 
 
 @claim("K.second", expect=CERTIFIED)
@@ -202,35 +197,37 @@ WORSE = [[2], [3], [0]]
 @claim("K.series", expect=CERTIFIED)
 def longer_may_be_worse_on_a_series():
     """On single series K = 2 can end farther from the optimal estimate than K = 1, with all steps measured too."""
-    exact = examples.enclosures("exact", MODELS, SWITCHING, WORSE)[-1]
-    one = abs(examples.enclosures("pulsating", MODELS, SWITCHING, WORSE)[-1] - exact)
-    two = abs(examples.enclosures("k-pulsating", MODELS, SWITCHING, WORSE, depth=2)[-1] - exact)
-    finding = differs(two, one)
-    return fact(
-        True,
-        bool(two > one),
-        finding.method,
-        CERTIFIED,
-        scope=finding.scope,
-        evidence=finding.evidence,
-        unsaid=BALLS_RUN,
-    )
+    exact, one, two = (examples.estimate(MODELS, SWITCHING, WORSE, period, f"K{period}_") for period in (3, 1, 2))
+    sizes = [f"abs({found.text} - ({exact.text}))" for found in (two, one)]
+    meaning = [*one.said, *two.said, state(sizes[0], ">", sizes[1], {**one.box, **two.box})]
+    far, near = (abs(found.ball - exact.ball) for found in (two, one))
+    evidence = f"{far.str(12, radius=False)} against {near.str(12, radius=False)}"
+    scope = "one model, one series of measurements"
+    certificate = {"kind": "all", "of": [*map(certify_at_sight, meaning)]}
+    finding = Finding(bool(far > near), "ball arithmetic", CERTIFIED, scope, evidence=evidence, certificate=certificate)
+    return Property(True, finding, tuple(meaning))
 
 
 @claim("K.exact")
 def exact_up_to_K():
     """K-pulsating: up to step K every hypothesis, weight and estimate is that of the optimal filter (K = 1..4)."""
     series = [[3], [1], [2], [4]]
-    equal = True
+    equal, meaning = True, list[dict]()
     for K in (1, 2, 3, 4):
         pulsating, exact = (
             examples.run(method, MODELS, SWITCHING, series[:K], depth=depth, kit=examples.ANY_DENSITY)
             for method, depth in (("k-pulsating", K), ("exact", None))
         )
         equal = equal and pulsating == exact
+        ours, optimal = pulsating[-1], exact[-1]
+        mean = " + ".join(f"({sum(leaf.weights)})*({leaf.mean[0]})" for leaf in optimal.leaves)
+        meaning += [
+            state(list_leaves(ours.leaves), "=", list_leaves(optimal.leaves)),
+            state(str(ours.mean[0]), "=", mean),
+        ]
     scope = "one model of two modes; the argument, that no fold comes before the estimate of step K, is general"
     method = "trees compared leaf by leaf in rational numbers, a function of the residual for each density"
-    return fact(True, equal, method, PROVED, scope=scope, unsaid=RUN)
+    return fact(True, equal, method, PROVED, scope=scope, meaning=meaning)
 
 
 SAME = [examples.CALM, examples.CALM]
@@ -246,18 +243,23 @@ def lossless_fold():
     method = "leaves of the exact tree compared as rational numbers"
     scope = "this model, every series of measurements: gains do not depend on them"
     evidence = "the four leaves of step 2 are one Gaussian, so the fold of K = 2 changes nothing"
-    return fact((4, 1), (len(leaves), len(second)), method, PROVED, scope=scope, evidence=evidence, unsaid=RUN)
+    unknown = sp.symbols("y1:3 g1:4", real=True)
+    leaves_of_any = examples.run("exact", LATE, SWITCHING, [[y] for y in unknown[:2]], kit=examples.ANY_DENSITY)[
+        1
+    ].leaves
+    rows = [(leaf.mean[0], leaf.covariance[0][0]) for leaf in leaves_of_any]
+    shares = [*unknown[2:], 1 - sum(unknown[2:])]
+    mean = sum(w * x for w, (x, _) in zip(shares, rows, strict=True))
+    variance = sum(w * (v + (x - mean) ** 2) for w, (x, v) in zip(shares, rows, strict=True))
+    symbols = {s.name: [None, None, []] for s in unknown}
+    sides = (f"[{', '.join(map(to_text, row))}]" for row in ((mean, variance) * 4, [x for row in rows for x in row]))
+    left, right = sides
+    meaning = [state(left, "=", right, symbols)]
+    return fact((4, 1), (len(leaves), len(second)), method, PROVED, scope=scope, evidence=evidence, meaning=meaning)
 
 
 @claim("K.longer", expect=CERTIFIED)
 def longer_may_be_worse():
     """A longer interval can lose: in the same example K = 3 misses the optimal estimate that K = 2 finds."""
     series = [[1], [0], [4], [1]]
-    return Property(
-        printed=True,
-        derived=differs(
-            examples.enclosures("k-pulsating", LATE, SWITCHING, series, depth=3)[3],
-            examples.enclosures("exact", LATE, SWITCHING, series)[3],
-        ),
-        unsaid=BALLS_RUN,
-    )
+    return differs(*(examples.estimate(LATE, SWITCHING, series, period) for period in (3, 4)))

@@ -5,7 +5,7 @@ from itertools import product
 
 import sympy as sp
 
-from navsym.claims import CERTIFIED, PROVED, Bound, Claim, Equation, Finding, Property, claim, fact, state
+from navsym.claims import CERTIFIED, PROVED, Bound, Claim, Equation, Property, claim, fact, state
 from navsym.language.expression import to_text
 from navsym_papers.multistructure import examples, finite
 from navsym_papers.multistructure.finite import Step, step
@@ -144,27 +144,21 @@ MODELS = [[examples.CALM, examples.JUMP]] * 4
 SWITCHING = [examples.STICKY] * 4
 
 
-def differs(first, second) -> Finding:
-    """Whether two numbers differ, by balls; undecided balls are an error, not an answer."""
-    if first.overlaps(second):
+def differs(first: examples.Estimate, second: examples.Estimate) -> Property:
+    """Whether two estimates differ, by balls; undecided balls are an error, not an answer."""
+    if first.ball.overlaps(second.ball):
         raise ArithmeticError("balls overlap: more bits are needed")
-    method = "ball arithmetic, 400 bits"
-    evidence = f"{first.str(12, radius=False)} against {second.str(12, radius=False)}"
-    return Finding(True, method, status=CERTIFIED, scope="one model, one series of measurements", evidence=evidence)
+    evidence = f"{first.ball.str(12, radius=False)} against {second.ball.str(12, radius=False)}"
+    scope = "one model, one series of measurements"
+    meaning = [*first.said, *second.said, state(first.text, "!=", second.text, {**first.box, **second.box})]
+    return fact(True, True, "ball arithmetic", CERTIFIED, scope=scope, evidence=evidence, meaning=meaning)
 
 
 @claim("17.suboptimal", expect=CERTIFIED)
 def suboptimal():
     """Below (18): the algorithm is suboptimal: in one model its second estimate differs from the optimal one."""
     series = [[3], [1]]
-    return Property(
-        printed=True,
-        derived=differs(
-            examples.enclosures("pulsating", MODELS, SWITCHING, series)[1],
-            examples.enclosures("exact", MODELS, SWITCHING, series)[1],
-        ),
-        unsaid="a filter is run in balls over several steps",
-    )
+    return differs(*(examples.estimate(MODELS, SWITCHING, series, period) for period in (1, 2)))
 
 
 @claim("17.first")

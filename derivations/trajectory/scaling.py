@@ -9,7 +9,6 @@ import sympy as sp
 from navsym.claims import PROVED, Equation, Property, claim, fact, state
 from navsym_papers.trajectory import model
 
-
 rho, tau = sp.symbols("rho tau", positive=True)
 
 #: Small order for statements with irrational norms; the two-stage procedure is printed for n = 5.

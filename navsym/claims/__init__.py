@@ -14,6 +14,7 @@ from navsym.claims.statement import (
     Property,
     Statement,
     Worded,
+    certify_at_sight,
     fact,
     state,
 )
@@ -42,6 +43,7 @@ __all__ = [
     "Verdict",
     "Verdicts",
     "Worded",
+    "certify_at_sight",
     "claim",
     "claims_of",
     "compare_equations",

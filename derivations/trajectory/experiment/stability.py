@@ -7,14 +7,17 @@ z = (1 + w) / (1 - w) turns the circle into the imaginary axis, and Routh's colu
 """
 
 import math
+import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
 
 import flint
+import sympy as sp
 
 from navsym.core.errors import DomainError, TooLargeError
+from navsym.language.expression import to_text
 from navsym_papers.trajectory.model import pascal_rows
 
 BITS = 160
@@ -196,10 +199,11 @@ def metric_scale(n: int, tau: Fraction) -> list[flint.arb]:
 # -- exact response ----------------------------------------------------------------------------------------
 
 
-def stationary_covariance(gain: Sequence[Fraction]) -> list[list[Fraction]]:
+def stationary_covariance(gain: Sequence[Fraction], drive: Sequence[Fraction] | None = None) -> list[list[Fraction]]:
     """Covariance of the error of f under white measurement noise of variance one, exact, (n, n).
 
-    Solves P = C P C^T + k k^T with C = Phi - k h over the rationals; C has to be stable.
+    Solves P = C P C^T + k k^T with C = Phi - k h over the rationals; C has to be stable. Another ``drive`` d gives the
+    sum of all C^l d d^T C^lT.
     """
     n = len(gain)
     Phi = pascal_rows(n)
@@ -211,7 +215,7 @@ def stationary_covariance(gain: Sequence[Fraction]) -> list[list[Fraction]]:
             for k in range(n):
                 for m in range(n):
                     system[(i * n + j) * size + k * n + m] -= C[i][k] * C[j][m]
-    right = [gain[i] * gain[j] for i in range(n) for j in range(n)]
+    right = [a * b for a in drive or gain for b in drive or gain]
     solved = rational(size, size, system).solve(rational(size, 1, right))
     return [[back(solved[i * n + j, 0]) for j in range(n)] for i in range(n)]
 
@@ -244,6 +248,29 @@ def harmonic_lag(gain: Sequence[Fraction], tau: Fraction, period: Fraction, stat
         f = flint.acb_mat(n, n, entries).solve(flint.acb_mat(n, 1, [b * zeta for b in balls]))
         truth = flint.acb(0, angle) ** (state - 1) / math.factorial(state - 1)
         return abs(f[state - 1, 0] / truth - 1)
+
+
+def write_lag(gain: Sequence[Fraction], angle: str, state: int) -> str:
+    """:func:`harmonic_lag` as a text; ``angle`` by which the motion turns at a step.
+
+    With s = zeta - 1 and M = Phi - E the answer is f = zeta sum_j M^j k s^(n-1-j) over s^n + sum_j h M^j k s^(n-1-j).
+    """
+    n, c, s, turn = len(gain), *sp.symbols("c s a", real=True)
+    shift, M = c - 1 + sp.I * s, sp.Matrix(pascal_rows(n)) - sp.eye(n)
+    columns = [M**j * sp.Matrix([sp.Rational(k.numerator, k.denominator) for k in gain]) for j in range(n)]
+    above = sum(column[state - 1] * shift ** (n - 1 - j) for j, column in enumerate(columns)) * (shift + 1)
+    below = shift**n + sum(sum(column) * shift ** (n - 1 - j) for j, column in enumerate(columns))
+    truth = (sp.I * turn) ** (state - 1) / math.factorial(state - 1)
+    sizes = [sum(part**2 for part in sp.expand(z).as_real_imag()) for z in (above - truth * below, truth * below)]
+    places = {"c": f"cos({angle})", "s": f"sin({angle})", "a": f"({angle})"}
+    text = f"sqrt(({to_text(sizes[0])})/({to_text(sizes[1])}))"
+    return re.sub(r"\b[csa]\b", lambda name: places[name[0]], text)
+
+
+def write_bessel(m: int) -> tuple[str, str]:
+    """Two numbers between which J_m(pi/36) lies: sums of two and of three terms of its alternating series."""
+    terms = [f"(pi/72)**{2 * k + m}/{math.factorial(k) * math.factorial(k + m)}" for k in range(3)]
+    return f"({terms[0]} - {terms[1]})", f"({terms[0]} - {terms[1]} + {terms[2]})"
 
 
 def root_decimal(x: Fraction, digits: int) -> str:
