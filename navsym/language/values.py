@@ -122,7 +122,7 @@ def write_declaration(value: Any, where: str, unit: str = "") -> Any:
 
 def declared_unit(name: str, declared: Any) -> str:
     """The unit that a table declares for a name, or for the array of which it is an entry; empty where it has none."""
-    own = declared.get(name, declared.get(ENTRY.sub("", name))) if isinstance(declared, Mapping) else None
+    own = declared.get(name, declared.get(ENTRY.sub("", str(name)))) if isinstance(declared, Mapping) else None
     return str(own.get("unit", "")) if isinstance(own, Mapping) else ""
 
 

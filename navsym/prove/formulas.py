@@ -111,16 +111,21 @@ def prove(
     beside = dict(tolerance=tolerance, exists=exists, given=given) | read_options(box, rates, order, seconds, jobs)
     if relation is None and is_file(statement):
         refuse_declarations(symbols or {name: value for name, value in beside.items() if value not in (None, {}, ())})
-        text = is_claim_text(statement)
-        document = parse_toml(statement, "prove") if text else read_toml(statement)  # before the slow import of algebra
-        from navsym.prove.claimfile import claims_from, decide_claims
-
-        claims = claims_from(document, "prove" if text else name_file(statement), go_on=True)
-        return decide_claims(claims, jobs=jobs, seconds=seconds, progress=progress)
+        return prove_file(statement, seconds, jobs, progress)
     sides = split_formula(statement, relation, right, symbols)
     from navsym.prove.claimfile import decide_claims
 
     return decide_claims(read_formula(sides, symbols, beside), seconds=seconds)[0]
+
+
+def prove_file(source: str | os.PathLike[str], seconds: float, jobs: int, progress: Progress | None) -> Verdicts:
+    """The verdicts of a claim file, or of its text."""
+    is_text = is_claim_text(source)
+    document = parse_toml(str(source), "prove") if is_text else read_toml(source)  # before the slow import of algebra
+    from navsym.prove.claimfile import claims_from, decide_claims
+
+    claims = claims_from(document, "prove" if is_text else name_file(source), go_on=True)
+    return decide_claims(claims, jobs=jobs, seconds=seconds, progress=progress)
 
 
 def state_formula(
