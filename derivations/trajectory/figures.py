@@ -10,17 +10,26 @@ from fractions import Fraction
 import flint
 import sympy as sp
 
-from navsym.claims import CERTIFIED, OPEN, UNDECIDED, Equation, Finding, Property, claim, fact, state
+from navsym.claims import CERTIFIED, OPEN, UNDECIDED, Equation, Property, claim, fact, state
+from navsym.core.balls import enclose
 from navsym_papers.trajectory.experiment.stability import (
+    bound_bessel,
     exact,
     gain_stability,
     harmonic_lag,
     stationary_covariance,
-    write_bessel,
-    write_lag,
 )
 from navsym_papers.trajectory.experiment_printed import TAU
-from navsym_papers.trajectory.gain import GAIN, METRIC, PERIOD, decimals, in_f, say_stable_within, say_still
+from navsym_papers.trajectory.gain import (
+    GAIN,
+    METRIC,
+    PERIOD,
+    in_f,
+    round_between,
+    say_between,
+    say_stable_within,
+    say_still,
+)
 from navsym_papers.trajectory.model import pascal_rows
 
 #: Metric gains (per metre: 1, 1/s, 1/s^2, ...) found by a search; what they do is computed below.
@@ -32,75 +41,50 @@ WITNESSES = {
 HARMONICS = 6
 
 
-def speed_noise(gain: list[Fraction]) -> flint.arb:
+def speed_noise(gain: list[Fraction]) -> sp.Rational:
     """Variance of V_2 under white noise of 1 m, (m/s)^2."""
-    return exact(stationary_covariance(gain)[1][1] / TAU**2)
+    return sp.Rational(stationary_covariance(gain)[1][1] / TAU**2)
 
 
-def speed_lag(gain: list[Fraction], speed: int) -> flint.arb:
-    """Mean square of the steady error of V_2 that yawing alone causes, (m/s)^2.
+def speed_lag(gain: list[Fraction], speed: int) -> list[sp.Expr]:
+    """Two numbers between which the mean square of the steady error of V_2 lies that yawing alone causes, (m/s)^2.
 
     V_2 = |V| cos(45 deg + d sin(wt)) has harmonics of amplitude |V| sqrt(2) J_m(d), d = 5 degrees.
     """
-    swing = flint.arb.pi() / 36
-    total = flint.arb(0)
-    for m in range(1, HARMONICS):
-        amplitude = speed * flint.arb(2).sqrt() * swing.bessel_j(m)
-        total += (amplitude * harmonic_lag(gain, TAU, PERIOD / m, 2)) ** 2 / 2
-    return total
+    lags = [(m, harmonic_lag(gain, TAU, PERIOD / m, 2)) for m in range(1, HARMONICS)]
+    return [sum((speed * lag * bound_bessel(m)[k]) ** 2 for m, lag in lags) for k in (0, 1)]
 
 
-def write_lags(gain: list[Fraction], speed: int) -> list[str]:
-    """Two numbers between which :func:`speed_lag` lies."""
-    lags = [f"({speed}*{write_lag(gain, f'{m}*pi/900', 2)})**2" for m in range(1, HARMONICS)]
-    return [" + ".join(f"{lag}*{write_bessel(m)[k]}**2" for m, lag in enumerate(lags, start=1)) for k in (0, 1)]
-
-
-def say_between(ends: list[str], printed: str) -> list[dict]:
-    """That a root between those of two numbers has the printed two decimals."""
-    half = Fraction(1, 200)
-    low, high = Fraction(printed) - half, Fraction(printed) + half
-    return [state(str(low), "<=", f"sqrt({ends[0]})"), state(f"sqrt({ends[-1]})", "<=", str(high))]
-
-
-def say_figures(speed: int, printed: tuple[str, str, str]) -> Property:
-    """:func:`two_figures`, with what it says of the gain: stable, straight, yawing, position."""
-    gain = in_f(WITNESSES[speed])
-    P = stationary_covariance(gain)
-    noise = f"{P[1][1] / TAU**2}"
-    rows = [noise], [f"{noise} + {lag}" for lag in write_lags(gain, speed)], [f"{P[0][0]}"]
-    near = Fraction(1, 10**6)
+def say_figures(speed: int, *printed: str) -> Property:
+    """RMS errors of V_2, straight and yawing, and of the position with a stable constant gain, two decimals."""
+    gain, near = in_f(WITNESSES[speed]), Fraction(1, 10**6)
+    noise, position = speed_noise(gain), sp.Rational(stationary_covariance(gain)[0][0])
+    squares = [noise] * 2, [noise + lag for lag in speed_lag(gain, speed)], [position] * 2
+    rows = [[sp.sqrt(square) for square in ends] for ends in squares]
     box = {f"k{i}": [str(k - k * near), str(k + k * near), []] for i, k in enumerate(WITNESSES[speed], start=1)}
     said = [text for row, figure in zip(rows, printed, strict=True) for text in say_between(row, figure)]
-    return Property(printed, two_figures(speed), (*say_stable_within(METRIC, box), *said))
-
-
-def two_figures(speed: int) -> Finding:
-    """RMS errors of V_2, straight and yawing, and of the position with a stable constant gain, two decimals."""
-    gain = in_f(WITNESSES[speed])
-    if gain_stability(gain, [Fraction(0)] * len(gain)).stable is not True:
-        return Finding("unstable", "Routh's column in balls", CERTIFIED)
-    noise, lag = speed_noise(gain), speed_lag(gain, speed)
-    position = exact(stationary_covariance(gain)[0][0]).sqrt()
-    return Finding(
-        (decimals(noise.sqrt(), 2), decimals((noise + lag).sqrt(), 2), decimals(position, 2)),
+    is_stable = gain_stability(gain, [Fraction(0)] * len(gain)).stable is True
+    return fact(
+        printed,
+        tuple(round_between(row, 2) for row in rows) if is_stable else "unstable",
         "exact stationary covariance, response to five harmonics in balls",
         CERTIFIED,
         scope=f"|V| = {speed} m/s, noise of 1 m, tau = 0.2 s, gain {', '.join(map(str, WITNESSES[speed]))}",
-        evidence=f"{float(noise.sqrt()):.4f} and {float((noise + lag).sqrt()):.4f} m/s",
+        evidence=f"{float(rows[0][0]):.4f} and {float(enclose(rows[1][0], bits=400)):.4f} m/s",
+        meaning=[*say_stable_within(METRIC, box), *said],
     )
 
 
 speed_errors_at_two_metres = claim(
     "experiment.sigma_v.2",
     "|V| = 2 m/s: a stable gain gives 0.06 m/s straight, 0.07 m/s yawing, but a position error of 0.83, not 0.1 m.",
-    lambda: say_figures(2, ("0.06", "0.07", "0.83")),
+    lambda: say_figures(2, "0.06", "0.07", "0.83"),
     expect=CERTIFIED,
 )
 speed_errors_at_three_hundred_metres = claim(
     "experiment.sigma_v.300",
     "|V| = 300 m/s: a stable gain gives 0.08 m/s straight, 0.09 yawing, but a position error of 0.47, not 0.1 m.",
-    lambda: say_figures(300, ("0.08", "0.09", "0.47")),
+    lambda: say_figures(300, "0.08", "0.09", "0.47"),
     expect=CERTIFIED,
 )
 
@@ -132,11 +116,13 @@ def straight_speed_error_is_not_noise_alone():
 @claim("experiment.sigma_v.yaw.100.full", expect=CERTIFIED)
 def yawing_speed_error_in_full():
     """|V| = 100 m/s while yawing, printed gain: 0.81 m/s by five harmonics, and 0.81 m/s with the noise of 1 m."""
-    noise, lag = speed_noise(in_f(GAIN)), speed_lag(in_f(GAIN), 100)
-    found = decimals(lag.sqrt(), 2), decimals((noise + lag).sqrt(), 2)
+    lags = speed_lag(in_f(GAIN), 100)
+    rows = [sp.sqrt(lag) for lag in lags], [sp.sqrt(speed_noise(in_f(GAIN)) + lag) for lag in lags]
+    found, meaning = (
+        tuple(round_between(row, 2) for row in rows),
+        [*say_between(rows[0], "0.81"), *say_between(rows[1], "0.81")],
+    )
     scope = "printed gain in D_p variables, steady yawing, noise of 1 m"
-    lags, power = write_lags(in_f(GAIN), 100), stationary_covariance(in_f(GAIN))[1][1] / TAU**2
-    meaning = say_between(lags, "0.81") + say_between([f"{power} + {lag}" for lag in lags], "0.81")
     return fact(("0.81", "0.81"), found, "five harmonics in balls", CERTIFIED, scope=scope, meaning=meaning)
 
 

@@ -7,7 +7,6 @@ z = (1 + w) / (1 - w) turns the circle into the imaginary axis, and Routh's colu
 """
 
 import math
-import re
 from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
@@ -17,7 +16,6 @@ import flint
 import sympy as sp
 
 from navsym.core.errors import DomainError, TooLargeError
-from navsym.language.expression import to_text
 from navsym_papers.trajectory.model import pascal_rows
 
 BITS = 160
@@ -230,47 +228,30 @@ def back(x: flint.fmpq) -> Fraction:
     return Fraction(int(x.p), int(x.q))
 
 
-def harmonic_lag(gain: Sequence[Fraction], tau: Fraction, period: Fraction, state: int) -> flint.arb:
-    """|estimate - truth| / |truth| of one state in the steady answer to a harmonic motion, as a ball.
+def harmonic_lag(gain: Sequence[Fraction], tau: Fraction, period: Fraction, state: int) -> sp.Expr:
+    """|estimate - truth| / |truth| of one state in the steady answer to a harmonic motion.
 
     gain  : (n,) in the variables f; the position is exp(i 2 pi t / period), sampled every tau
     state : 1 position, 2 speed, 3 acceleration, ...
     The observer answers z_k = zeta^k with f zeta^k, f = (zeta E - C)^-1 k zeta; the true f of
-    the state is (i omega tau)^(state - 1) / (state - 1)!.
+    the state is (i omega tau)^(state - 1) / (state - 1)!. With s = zeta - 1 and M = Phi - E, f is
+    zeta sum_j M^j k s^(n-1-j) over s^n + sum_j h M^j k s^(n-1-j).
     """
-    n = len(gain)
-    Phi = pascal_rows(n)
-    with flint.ctx.workprec(BITS):
-        angle = 2 * flint.arb.pi() * exact(tau / period)
-        zeta = flint.acb(angle.cos(), angle.sin())
-        balls = [flint.acb(exact(g)) for g in gain]
-        entries = [(zeta if i == j else flint.acb(0)) - Phi[i][j] + balls[i] for i in range(n) for j in range(n)]
-        f = flint.acb_mat(n, n, entries).solve(flint.acb_mat(n, 1, [b * zeta for b in balls]))
-        truth = flint.acb(0, angle) ** (state - 1) / math.factorial(state - 1)
-        return abs(f[state - 1, 0] / truth - 1)
-
-
-def write_lag(gain: Sequence[Fraction], angle: str, state: int) -> str:
-    """:func:`harmonic_lag` as a text; ``angle`` by which the motion turns at a step.
-
-    With s = zeta - 1 and M = Phi - E the answer is f = zeta sum_j M^j k s^(n-1-j) over s^n + sum_j h M^j k s^(n-1-j).
-    """
-    n, c, s, turn = len(gain), *sp.symbols("c s a", real=True)
+    n, c, s, angle = len(gain), *sp.symbols("c s a", real=True)
     shift, M = c - 1 + sp.I * s, sp.Matrix(pascal_rows(n)) - sp.eye(n)
-    columns = [M**j * sp.Matrix([sp.Rational(k.numerator, k.denominator) for k in gain]) for j in range(n)]
+    columns = [M**j * sp.Matrix([sp.Rational(k) for k in gain]) for j in range(n)]
     above = sum(column[state - 1] * shift ** (n - 1 - j) for j, column in enumerate(columns)) * (shift + 1)
     below = shift**n + sum(sum(column) * shift ** (n - 1 - j) for j, column in enumerate(columns))
-    truth = (sp.I * turn) ** (state - 1) / math.factorial(state - 1)
+    truth = (sp.I * angle) ** (state - 1) / math.factorial(state - 1)
     sizes = [sum(part**2 for part in sp.expand(z).as_real_imag()) for z in (above - truth * below, truth * below)]
-    places = {"c": f"cos({angle})", "s": f"sin({angle})", "a": f"({angle})"}
-    text = f"sqrt(({to_text(sizes[0])})/({to_text(sizes[1])}))"
-    return re.sub(r"\b[csa]\b", lambda name: places[name[0]], text)
+    turn = 2 * sp.pi * sp.Rational(tau / period)
+    return sp.sqrt(sizes[0] / sizes[1]).subs({c: sp.cos(turn), s: sp.sin(turn), angle: turn})
 
 
-def write_bessel(m: int) -> tuple[str, str]:
+def bound_bessel(m: int) -> tuple[sp.Expr, sp.Expr]:
     """Two numbers between which J_m(pi/36) lies: sums of two and of three terms of its alternating series."""
-    terms = [f"(pi/72)**{2 * k + m}/{math.factorial(k) * math.factorial(k + m)}" for k in range(3)]
-    return f"({terms[0]} - {terms[1]})", f"({terms[0]} - {terms[1]} + {terms[2]})"
+    terms = [(sp.pi / 72) ** (2 * k + m) / (math.factorial(k) * math.factorial(k + m)) for k in range(3)]
+    return terms[0] - terms[1], terms[0] - terms[1] + terms[2]
 
 
 def root_decimal(x: Fraction, digits: int) -> str:
