@@ -37,7 +37,7 @@ from navsym.observability.ring import Poly, Ring
 from navsym.observability.tree import linear_places
 
 #: Points tried, terms of the columns and of all remainders, and bits for each state.
-POINTS, COLUMN_TERMS, TERMS, BITS = 6, 1500, 30000, 96
+POINTS, COLUMN_TERMS, TERMS, BITS = 6, 4000, 200_000, 96
 #: Rounds of divisions by all zeros, and steps of Newton's method.
 DIVISIONS, NEWTON = 20, 25
 #: Why there is no certificate.

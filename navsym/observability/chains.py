@@ -52,8 +52,8 @@ def characteristic_coefficients(matrix: Matrix, ring: Ring) -> list[Poly]:
 STATES = 40
 #: Terms of a vector, or of a whole chain to be solved, up to which those of a moving model are written.
 LONGEST = 300
-#: The same for a vector of a constant model, whose relation comes from the characteristic polynomial.
-LONGEST_CONSTANT = 800
+#: The same for a vector and a chain of a constant model, whose relation comes from the characteristic polynomial.
+LONGEST_CONSTANT, LONGEST_CHAIN = 800, 1200
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -186,7 +186,8 @@ def chain_of(name: str, row: list[Poly], bottom: Poly, motion: Motion) -> Chain:
             if sum(len(entry) for entry in vectors[-1]) > (LONGEST if motion.rates else LONGEST_CONSTANT):
                 return Chain(name, vectors[:dimension], bottom, clock, None, dimension)
             vectors.append(motion.advance(vectors[-1]))
-        if motion.rates and (motion.roots or sum(len(x) for v in vectors for x in v) > LONGEST):
+        terms = sum(len(x) for v in vectors for x in v)
+        if terms > (LONGEST if motion.rates else LONGEST_CHAIN) or (motion.rates and motion.roots):
             return Chain(name, vectors[:dimension], bottom, clock, None, dimension)
         coefficients = chain_coefficients(vectors, dimension, motion)
         if coefficients is not None:

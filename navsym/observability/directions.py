@@ -54,10 +54,19 @@ def resting_directions(rows: Matrix, motion: Motion, rank: int, point: Sequence[
     chosen = independent_places(at_point(listed, point))
     if len(chosen) != rank:
         return None
-    found = null_vectors(simplified_rows([listed[k] for k in chosen], motion.ring), motion.size, motion.ring)
+    short = simplified_rows([listed[k] for k in chosen], motion.ring)
+    found = null_vectors(short, motion.size, motion.ring)
+    if sum(len(x) for vector in found for x in vector) > ROW_TERMS:
+        found = null_vectors(short, motion.size, motion.ring, light_columns(short, point))
     zero = motion.ring.constant(0)
     seen = any(motion.reduced(scalar_product(row, vector, zero)) != 0 for row in listed for vector in found)
     return None if seen else found
+
+
+def light_columns(rows: Matrix, point: Sequence[int]) -> list[int]:
+    """Places of independent columns, those with few terms first: pivots in them give short null vectors."""
+    columns = sorted(enumerate(zip(*rows, strict=True)), key=lambda item: sum(map(len, item[1])))
+    return [columns[k][0] for k in independent_places(at_point([[*column] for _, column in columns], point))]
 
 
 def simplified_rows(rows: Matrix, ring: Ring) -> Matrix:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Mapping
 from html import escape
 from typing import TYPE_CHECKING, Any
@@ -22,6 +23,8 @@ if TYPE_CHECKING:
 
 #: Of the rank, whose key is None, and of every drop: its certificate, or why there is none.
 Proofs = Mapping[RankDrop | None, Mapping[str, Any] | str]
+#: Seconds of processor time after which no further certificate is looked for, and what stands in its place.
+SECONDS, NO_TIME = 25, "the time ran out"
 
 
 def document_of_observability(answer: Observability) -> dict[str, Any]:
@@ -62,10 +65,10 @@ def list_proofs(answer: Observability) -> Proofs:
         return {None: certify_inputs(answer.contents, answer.joint) or "no feedback or no derivatives were found"}
     if answer.joint.written is None:
         return {None: "a model in pieces" if answer.pieces else "long rows"}
-    certifier = Certifier.of(answer.model)
+    certifier, end = Certifier.of(answer.model), time.process_time() + SECONDS
     found: dict[RankDrop | None, Mapping[str, Any] | str] = {None: certifier.certify_rank(answer.joint)}
     for drop in list_nested(answer.rank_drops):
-        found[drop] = certifier.certify_drop(drop)
+        found[drop] = certifier.certify_drop(drop) if time.process_time() < end else NO_TIME
     return found
 
 

@@ -46,12 +46,6 @@ def residue_rank(rows: list[list[int]]) -> int:
     return nmod_mat(rows, PRIME).rank()
 
 
-def residue_kernel(rows: list[list[int]]) -> tuple[nmod_mat, int]:
-    """Directions that the rows do not see, as the first columns of a matrix, and how many they are."""
-    kernel, count = nmod_mat(rows, PRIME).nullspace()
-    return kernel, int(count)
-
-
 def residues_on(rows: list[list[int]], kernel: nmod_mat, count: int) -> list[list[int]]:
     """Independent vectors (k, count) that the rows make of the first columns of a kernel."""
     seen = nmod_mat(rows, PRIME) * kernel
@@ -181,14 +175,15 @@ def linear_relation(vectors: Matrix, target: list[Poly], ring: Ring) -> list[Quo
     return [cancel_fraction(-value, relation[size]) for value in relation[:size]]
 
 
-def null_vectors(rows: Matrix, size: int, ring: Ring) -> Matrix:
+def null_vectors(rows: Matrix, size: int, ring: Ring, columns: Sequence[int] | None = None) -> Matrix:
     """Basis of ``{x : rows x = 0}`` with polynomial entries without a common factor.
 
-    rows : independent vectors of the given length; every answer is checked by multiplication.
+    rows    : independent vectors of the given length; every answer is checked by multiplication
+    columns : where the pivots are; anywhere by default
     """
     if not rows:
         return [[ring.constant(int(i == k)) for i in range(size)] for k in range(size)]
-    found = triangular_form(rows, ring)
+    found = triangular_form(rows, ring, columns)
     basis = list(null_columns(found.rows, found.columns, size, ring))
     for vector in basis:
         if any(scalar_product(row, vector, ring.constant(0)) != 0 for row in rows):

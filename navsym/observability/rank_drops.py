@@ -69,18 +69,15 @@ def generator_degree_bound(starts: Sequence[tuple[list[Poly], int]], matrix: Mat
 def points_needed(starts: Sequence[tuple[list[Poly], int]], matrix: Matrix) -> int:
     """Number of integer points at which the determinant of the chains is taken."""
     starts = [(row, count) for row, count in starts if count]
-    return math.prod(generator_degree_bound(starts, matrix, place) + 1 for place in range(count_generators(matrix)))
-
-
-def count_generators(matrix: Matrix) -> int:
-    """Number of generators of the ring of the entries."""
-    return int(matrix[0][0].context().nvars())
+    return math.prod(
+        generator_degree_bound(starts, matrix, place) + 1 for place in range(matrix[0][0].context().nvars())
+    )
 
 
 def chain_determinant(starts: Sequence[tuple[list[Poly], int]], matrix: Matrix, ring: Ring) -> Poly | None:
     """Determinant of the chains (h, number of vectors), n vectors together; None when it takes too many points."""
     starts = [(row, count) for row, count in starts if count]
-    bounds = [generator_degree_bound(starts, matrix, place) for place in range(count_generators(matrix))]
+    bounds = [generator_degree_bound(starts, matrix, place) for place in range(matrix[0][0].context().nvars())]
     if math.prod(bound + 1 for bound in bounds) > POINTS:
         return None
     motion = Table(itertools.chain(*matrix))
@@ -98,8 +95,8 @@ class Table:
 
     def __init__(self, entries: Iterable[Poly]) -> None:
         listed = list(entries)
-        self.fixed = [constant_of(entry) for entry in listed]
         self.varying = [(place, entry) for place, entry in enumerate(listed) if entry != 0 and not entry.is_constant()]
+        self.fixed = [fmpz(int(entry.leading_coefficient())) if len(entry) == 1 else fmpz(0) for entry in listed]
 
     def at(self, point: Sequence[int]) -> list[fmpz]:
         """Values of all entries at a point."""
@@ -107,11 +104,6 @@ class Table:
         for place, entry in self.varying:
             values[place] = entry(*point)
         return values
-
-
-def constant_of(entry: Poly) -> fmpz:
-    """A constant polynomial as an integer; 0 for any other, whose place is filled at every point."""
-    return fmpz(int(entry.leading_coefficient())) if entry != 0 and entry.is_constant() else fmpz(0)
 
 
 def determinant_at(starts: Sequence[tuple[Table, int]], motion: Table, n: int, point: Sequence[int]) -> fmpz:
@@ -449,10 +441,8 @@ def drops_by_staircases(chains: Chains, part: tuple[Chain, ...], rank: int) -> l
 
 def compositions(total: int, caps: Sequence[int]) -> Iterator[tuple[int, ...]]:
     """All tuples of nonnegative numbers with the given sum, each at most its cap."""
-    if not caps:
-        if total == 0:
-            yield ()
-        return
-    for first in range(min(total, caps[0]), -1, -1):
+    if not caps and total == 0:
+        yield ()
+    for first in range(min(total, caps[0]), -1, -1) if caps else ():
         for rest in compositions(total - first, caps[1:]):
             yield (first, *rest)

@@ -13,17 +13,18 @@ from itertools import combinations
 from math import comb
 
 import sympy as sp
+from flint import nmod_mat
 
 from navsym.core.errors import DomainError, EmptyError, ShapeError, TooLargeError
 from navsym.models.linear import LinearModel, exact_matrix
 from navsym.observability.chains import need_chains, prove_rank
 from navsym.observability.directions import exhibit_unobservable
 from navsym.observability.linear import (
+    PRIME,
     Matrix,
     at_point,
     independent_places,
     null_vectors,
-    residue_kernel,
     residue_rank,
     residues_on,
     scalar_product,
@@ -122,7 +123,7 @@ def lay_out(model: LinearModel, rows: Mapping[str, sp.Matrix]) -> Setting:
     own, free = every[: model.H.rows], dict(zip(rows, every[model.H.rows :], strict=True))
     seen = {point: residue_chains(own, motion, point) for point in motion.points()}
     point = max(seen, key=lambda key: residue_rank(seen[key]))
-    kernel, missing = residue_kernel(seen[point])
+    kernel, missing = nmod_mat(seen[point], PRIME).nullspace()
     chains = {name: residues_on(residue_chains([row], motion, point), kernel, missing) for name, row in free.items()}
     return Setting(motion.ring, motion, own, free, point, missing, chains)
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import time
 
 import pytest
 import sympy as sp
@@ -11,6 +12,8 @@ import navsym as nav
 from navsym import checker
 from navsym.cli.main import run
 from navsym.models.linear import LinearModel
+from navsym.observability import document
+from navsym.observability.answer import observe_linear
 from navsym.observability.certificates import LONG, NO_SHARES, Certifier, is_granted, list_nested, solve_near
 
 REAL = "real"
@@ -102,6 +105,25 @@ def test_what_is_too_long_stands_as_unchecked():
 
     model = navigation_errors()
     assert Certifier.of(model).certify(12, [[Certifier.of(model).motion.clock ** 9] * 15] * 3, [], range(3)) == LONG
+
+
+def test_when_the_time_runs_out_the_answer_says_which_drops_have_no_certificate(monkeypatch):
+    monkeypatch.setattr(document, "SECONDS", 0)
+    data = couplings().document()
+    assert data["checked"] and data["rank_drops"]
+    assert {drop["unchecked"] for drop in data["rank_drops"]} == {document.NO_TIME}
+
+
+@pytest.mark.slow
+def test_a_minute_suffices_for_the_whole_answer_about_28_states():
+    from tests.benchmarks.observability import satellite_and_odometer
+
+    start = time.process_time()
+    answer = observe_linear(satellite_and_odometer())
+    data = answer.document()
+    assert time.process_time() - start < 60
+    assert answer.rank == 15 and data["proved"]
+    assert sum(drop["checked"] for drop in data["rank_drops"]) >= 20
 
 
 def test_what_must_not_vanish_may_move():

@@ -11,8 +11,11 @@ import sympy as sp
 from navsym.core.errors import DomainError, EmptyError, TooLargeError, UnobservableError
 from navsym.models.linear import LinearModel
 from navsym.observability.chains import direction_names, need_observable, observe_jointly, prove_rank
-from navsym.observability.linear import determinant
+from navsym.observability.directions import resting_directions
+from navsym.observability.linear import at_point, determinant, residue_rank, scalar_product
+from navsym.observability.motion import motion_of
 from navsym.observability.ring import Ring
+from tests.benchmarks.observability import satellite_and_odometer
 from tests.observability.twins import determinant_slowly, maximal_minors
 
 a = sp.Symbol("a")
@@ -187,6 +190,19 @@ def test_maximal_minors_are_all_square_minors():
 def test_bad_models_are_refused_with_a_reason(F, H, error, message):
     with pytest.raises(error, match=message):
         observe_jointly(LinearModel(F, None, H))
+
+
+def test_directions_that_nothing_shows_are_short_where_pivots_stand_in_columns_with_few_terms():
+    """28 states at constant attitude and force: the first pivots that come give seven times as many terms."""
+    model = satellite_and_odometer()
+    motion, listed = motion_of(model)
+    rows = [row for row, _ in listed]
+    found = prove_rank(model)
+    columns = resting_directions(rows, motion, found.rank, motion.points(1)[0])
+    assert (found.rank, len(columns)) == (15, 13) and found.upper
+    assert sum(len(x) for column in columns for x in column) < 14_000
+    assert residue_rank(at_point(columns, motion.points(1)[0])) == 13
+    assert all(scalar_product(row, column, motion.ring.constant(0)) == 0 for row in rows for column in columns)
 
 
 def test_equal_rows_in_disguise_are_recognised():
