@@ -290,12 +290,8 @@ def describe_change(
         pairs = ((f"{sign}({rows[i][j]})", expected[i][j]) for i in range(len(rows)) for j in range(3))
         return all(prover.compare(plain_card(card), *pair).status == PROVED for pair in pairs)
 
-    words = "write"
     ways = ("-", False, "change the sign"), ("", True, "transpose"), ("-", True, "transpose and change the sign")
-    for sign, turned, text in ways:
-        if agrees(sign, turned):
-            words = f"{text}: write"
-            break
+    words = next((f"{text}: write" for sign, turned, text in ways if agrees(sign, turned)), "write")
     rows = [[diagonal * (i == j) + x for j, x in enumerate(row)] for i, row in enumerate(expected)]
     rows = [[rows[i][j] for j in order[1]] for i in order[0]]
     lacking = list_missing(rows).items()

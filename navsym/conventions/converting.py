@@ -171,7 +171,6 @@ class Converter:
         self.formulas = Formulas(problem, plain_card(source))
         roles = len(problem.roles)  # columns of T and its inverse, blocks of F, rows of what is proved
         self.progress, self.done, self.steps = progress, 0, 6 * roles + roles * roles + 2 * self.n
-
         self.rotation = constant(self.formulas.world.C)
         self.moves = any(getattr(source, n) != getattr(target, n) for n in ("frame", "axes", "azimuth"))
 

@@ -28,13 +28,13 @@ TABLE: dict[str, tuple[str, int, str]] = {
     "W": ("1", 0, "J/s"), "V": ("1", 0, "W/A"), "T": ("1", 0, "kg/s^2/A"), "G": ("1/10000", 0, "T"),
     "Pa": ("1", 0, "N/m^2"), "bar": ("100000", 0, "Pa"), "gram": ("1/1000", 0, "kg"),
 }  # fmt: skip
-#: Long names, which are those of pint, and the powers of ten of their prefixes.
+#: Long names, which are those of pint, and the powers of ten of their prefixes. Its gauss is none of SI.
 NAMES = {
     "meter": "m", "second": "s", "gram": "gram", "ampere": "A", "kelvin": "K", "mole": "mol", "candela": "cd",
     "radian": "rad", "steradian": "sr", "percent": "%", "degree": "deg", "arcminute": "arcmin", "arcsecond": "arcsec",
     "grade": "gon", "turn": "rev", "minute": "min", "hour": "h", "hertz": "Hz", "foot": "ft", "nautical_mile": "nmi",
     "knot": "kn", "kilometer_per_hour": "km/h", "revolutions_per_minute": "rev/min", "standard_gravity": "g",
-    "galileo": "Gal", "newton": "N", "joule": "J", "watt": "W", "volt": "V", "tesla": "T", "gauss": "G",
+    "galileo": "Gal", "newton": "N", "joule": "J", "watt": "W", "volt": "V", "tesla": "T",
     "pascal": "Pa", "bar": "bar",
 }  # fmt: skip
 PREFIXES = {
