@@ -90,9 +90,9 @@ def test_a_false_count_or_bound_in_the_place_of_a_true_one_is_not_granted():
     ends = gain.say_yawing("0.06", 3).meaning
     for text in (*truth, *ends):
         assert decide(Property(True, FOUND, (text,))).status.holds
-    lies = [{**text, "right": "9"} for text in truth[:2]] + [
-        {**text, "right": "1/100"} for text in (*truth[2:], ends[0])
-    ]
+    lies = [{**text, "right": "9"} for text in truth[:2]]
+    lies += [{**text, "right": "1/100"} for text in (*truth[2:4], ends[0])]
+    lies.append({**truth[4], "left": "sqrt(1/3 - 1/2)"})
     for text in lies:
         assert not decide(Property(True, FOUND, (text,))).status.holds, text
 
