@@ -112,7 +112,8 @@ def mean_of(polynomial) -> Mean:
     degree, r = max(polynomial.degree(), 1), fmpq_poly([0, SCALE])
     above = sum((c * r**k * (1 + r) ** (degree - k) for k, c in enumerate(polynomial.coeffs())), fmpq_poly([0]))
     below = 2 * (1 + r) ** (degree - 1)
-    nodes = [fmpq(round(500 + 500 * math.cos(math.pi * (k + 0.5) / (DEGREE + 1))), 1000) for k in range(DEGREE + 1)]
+    turns = [math.pi * (2 * k + 1) / (2 * DEGREE + 2) for k in range(DEGREE + 1)]
+    nodes = [fmpq(round(500 + 500 * math.cos(turn)), 1000) for turn in turns]
     rows = fmpq_mat(DEGREE + 1, DEGREE + 1, [x**k for x in nodes for k in range(DEGREE + 1)])
     fit = rows.solve(fmpq_mat(DEGREE + 1, 1, [above(x) / below(x) for x in nodes]))
     shares = [fmpq((fit[k, 0] * 10**9 + fmpq(1, 2)).floor(), 10**9) for k in range(DEGREE + 1)]

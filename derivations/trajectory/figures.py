@@ -107,8 +107,8 @@ def straight_speed_error_is_not_noise_alone():
     away = (Fraction("0.019") ** 2 - P[1][1] / TAU**2) ** 2
     method = "exact covariances of the error at all lags"
     scope = "printed gain in D_p variables, first straight course after the tuning, Gaussian noise of 1 m"
-    evidence = f"expected {float(P[1][1] / TAU**2) ** 0.5:.4f} m/s; the printed square is at least "
-    evidence += f"{float(away / scatter) ** 0.5:.2f} standard deviations off"
+    evidence = f"expected {math.sqrt(P[1][1] / TAU**2):.4f} m/s; the printed square is at least "
+    evidence += f"{math.sqrt(away / scatter):.2f} standard deviations off"
     meaning = [say_still(P, gain), say_still(S, column), state(str(away), ">", f"9*{scatter}")]
     return fact(False, away <= 9 * scatter, method, CERTIFIED, scope=scope, evidence=evidence, meaning=meaning)
 

@@ -3,17 +3,23 @@
 from __future__ import annotations
 
 import json
+from fractions import Fraction
 
 import pytest
+import sympy as sp
+from flint import fmpq_poly
 
 from navsym.checker import Refused, check, load
-from navsym.claims import REFUTED
+from navsym.claims import PROVED, REFUTED, Equation, Finding, Property
 from navsym.claims.paper import papers_folder
+from navsym.prove.grant import UNCHECKED
+from navsym.prove.ladder import decide
 from navsym.verification.certificates import Certificates
 from navsym.verification.decide import decide_papers
 from tests.derivations.statements import PAPERS, module, part_of
 
 HOLDS = {"PROVED", "CERTIFIED"}
+FOUND = Finding(True, "found", PROVED)
 
 
 @pytest.fixture(scope="module", params=PAPERS)
@@ -67,6 +73,34 @@ def test_what_does_not_rest_on_proof_says_so(document):
     """CONFIRMED is a sampled verdict: its evidence counts the points or the trials."""
     confirmed = [r for r in document["claims"] if r["status"] == "CONFIRMED"]
     assert not [r["id"] for r in confirmed if not any(ch.isdigit() for ch in r["evidence"] + r["scope"])]
+
+
+def test_all_verdicts_but_one_are_granted_by_the_checker(document):
+    """Jensen's formula, of all gains at once, has no words in the language of statements."""
+    unchecked = {r["id"] for r in document["claims"] if UNCHECKED in r["evidence"]}
+    assert unchecked <= {"trajectory:experiment.together.100"}
+
+
+def test_a_false_count_or_bound_in_the_place_of_a_true_one_is_not_granted():
+    from navsym_papers.multistructure import interval, polygaussian, pulsating
+    from navsym_papers.trajectory import algorithm, gain
+
+    truth = pulsating.say_sequences(2, 3, 8), polygaussian.say_walks(3, 2), *interval.mean_of(fmpq_poly([0, 0, 1])).said
+    truth += (algorithm.counted({Fraction(1, 3), Fraction(1, 2)})[2],)
+    ends = gain.say_yawing("0.06", 3).meaning
+    for text in (*truth, *ends):
+        assert decide(Property(True, FOUND, (text,))).status.holds
+    lies = [{**text, "right": "9"} for text in truth[:2]]
+    lies += [{**text, "right": "1/100"} for text in (*truth[2:4], ends[0])]
+    lies.append({**truth[4], "left": "sqrt(1/3 - 1/2)"})
+    for text in lies:
+        assert not decide(Property(True, FOUND, (text,))).status.holds, text
+
+
+def test_matrices_of_different_sizes_are_refuted_by_their_sizes():
+    verdict = decide(Equation(sp.Matrix([[1, 0, 0]]), sp.Matrix([[1, 0]])))
+    assert verdict.status == REFUTED
+    assert verdict.certificate["statement"]["left"] == "3"
 
 
 def test_the_ledger_holds_these_verdicts(document):
