@@ -106,10 +106,7 @@ def prove(
     beside = dict(tolerance=tolerance, exists=exists, given=given) | read_options(box, rates, order, seconds, jobs)
     if relation is None and is_file(statement):
         refuse_declarations(symbols or {name: value for name, value in beside.items() if value not in (None, {}, ())})
-        read_toml(statement)  # a file that is none is refused before the slow import of the algebra
-        from navsym.prove.claimfile import decide_claims, read_claims
-
-        return decide_claims(read_claims(statement, go_on=True), jobs=jobs, seconds=seconds, progress=progress)
+        return prove_file(statement, seconds, jobs, progress)
     sides = split_formula(statement, relation, right, symbols)
     from navsym.prove.claimfile import decide_claims
 
@@ -175,6 +172,14 @@ def choose_order(printed: tuple[str, int] | None, order: Mapping[str, int] | Non
         message = "expected one order; got O(...) in the formula and order= beside it; remove one of them"
         raise DomainError(message, where="prove: order")
     return dict([printed])
+
+
+def prove_file(path: str | os.PathLike[str], seconds: float, jobs: int, progress: Progress | None) -> Verdicts:
+    """The verdicts of a claim file."""
+    read_toml(path)  # a file that is none is refused before the slow import of the algebra
+    from navsym.prove.claimfile import decide_claims, read_claims
+
+    return decide_claims(read_claims(path, go_on=True), jobs=jobs, seconds=seconds, progress=progress)
 
 
 def read_formula(sides: Sides, given: Mapping[str, Any], beside: Mapping[str, Any]) -> ClaimFile:
