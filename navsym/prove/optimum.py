@@ -145,14 +145,9 @@ def require_everywhere(verdict: Verdict) -> Verdict:
 def decide_values(statement: Optimum) -> Verdict:
     """sum |phi_j| = x . P = printed value, with the signs of the weights proved."""
     dual_value = sum((x * p for x, p in zip(statement.dual, statement.functional, strict=True)), sp.Integer(0))
-    proved = [prove_modulus(weight, statement.box) for weight in statement.weights]
+    weights = [sp.sympify(weight, strict=True) for weight in statement.weights]
+    proved = [next((w for w in (weight, -weight) if is_nonnegative(w, statement.box)), None) for weight in weights]
     sizes = [sp.Abs(weight) if size is None else size for size, weight in zip(proved, statement.weights, strict=True)]
     primal_value = sum(sizes, sp.Integer(0))
     sides = Equation((statement.value, primal_value), (dual_value, dual_value), statement.box)
     return decide_equation(sides)
-
-
-def prove_modulus(weight: sp.Expr, box: Box) -> sp.Expr | None:
-    """|weight| with its sign proved on the whole box, or None."""
-    weight = sp.sympify(weight, strict=True)
-    return next((value for value in (weight, -weight) if is_nonnegative(value, box)), None)

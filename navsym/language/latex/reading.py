@@ -425,9 +425,7 @@ def read_sides(
     for side, part in zip((relation.left, relation.right), parts, strict=True):
         with shifted(side.start):
             if climb(side.text, notation) != part:
-                raise Refusal(
-                    part.at, "two readings that agree", "two that differ", "write it in parts, with parentheses"
-                )
+                raise Refusal(part.at, "two readings that agree", "two that differ", "write parts, with parentheses")
     used = dict.fromkeys(name for part in parts for name in list_names(part) if name in notation)
     with shifted(relation.right.start):
         parts[1], order = take_order(parts[1])
