@@ -378,7 +378,8 @@ class Reader(SourceReader):
                 items = tuple(map(self.taken_for_parameter, named(field_of(inner, "parameters"))))
                 name, start = text_of(field_of(inner, "declarator")), self.part("list", inner, items)
                 if shape is None:  # MatrixXd K(n, m), or the declaration of a function
-                    done.append(self.unread(child, "a declaration with parentheses of a type without known sizes"))
+                    why = "a declaration with parentheses of a type without known sizes"
+                    done.append(self.part("unread", child, why, (*identifiers_in(child), *names_in(*items))))
                     continue
             start = None if start is None else self.quaternion(child, kind, start)
             is_pointer = any(n.type in (*POINTER, "reference_declarator") for n in descend(inner))
