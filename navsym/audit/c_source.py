@@ -206,7 +206,7 @@ class Reader(SourceReader):
         declarator, body = head_of_function(node), field_of(node, "body")
         if declarator is None or body is None:
             return
-        name = text_of(field_of(declarator, "declarator")).split("<")[0].split("::")[-1]
+        name = re.sub(r"<.*?>", "", text_of(field_of(declarator, "declarator"))).split("::")[-1]
         parameters = named(field_of(declarator, "parameters"))
         declared = (n for n in descend(node) if n.type in ("declaration", "parameter_declaration"))
         inner = [field_of(c, "declarator") or c for n in declared for c in n.children_by_field_name("declarator")]
