@@ -206,7 +206,7 @@ class Reader(SourceReader):
         declarator, body = head_of_function(node), field_of(node, "body")
         if declarator is None or body is None:
             return
-        name = text_of(field_of(declarator, "declarator")).split("<")[0].split("::")[-1]
+        name = re.sub(r"<.*?>", "", text_of(field_of(declarator, "declarator"))).split("::")[-1]
         parameters = named(field_of(declarator, "parameters"))
         declared = (n for n in descend(node) if n.type in ("declaration", "parameter_declaration"))
         inner = [field_of(c, "declarator") or c for n in declared for c in n.children_by_field_name("declarator")]
@@ -378,7 +378,8 @@ class Reader(SourceReader):
                 items = tuple(map(self.taken_for_parameter, named(field_of(inner, "parameters"))))
                 name, start = text_of(field_of(inner, "declarator")), self.part("list", inner, items)
                 if shape is None:  # MatrixXd K(n, m), or the declaration of a function
-                    done.append(self.unread(child, "a declaration with parentheses of a type without known sizes"))
+                    why = "a declaration with parentheses of a type without known sizes"
+                    done.append(self.part("unread", child, why, (*identifiers_in(child), *names_in(*items))))
                     continue
             start = None if start is None else self.quaternion(child, kind, start)
             is_pointer = any(n.type in (*POINTER, "reference_declarator") for n in descend(inner))

@@ -33,9 +33,9 @@ NUMERIC = ("numpy", "math", "autograd.numpy", "jax.numpy")
 NAMES = ("np", "numpy", "math", "abs", "max", "min", "float", "range")
 #: What may write any name of the module, or a member of what it is given.
 RUNNING, ANY = ("exec", "eval", "globals", "vars", "locals", "setattr", "delattr"), "*"
+#: How a function binds names of its own, which are followed where they are read.
+FOLLOWED = ("assignment", "augmented_assignment", "parameters", "lambda_parameters")
 AGAIN = "a function whose name may stand for something else"
-#: Modules with decorators that leave a function what it is.
-DECORATING = ("numba", "functools", "abc", "typing", "typing_extensions")
 
 
 @dataclass(slots=True, eq=False)
@@ -45,7 +45,7 @@ class Reader(SourceReader):
     rebound : names of modules and of their functions that the file uses for something else
     times   : how often the module binds a name, in whatever way
     star    : where the last import of all names of a module is
-    made    : names that are not those of a module with known decorators
+    made    : names that the file binds, imports aside
     changed : names outside of functions that hold more than their one value
     given   : names whose arrays get another name, or go to what may write to them
     free, methods : the functions of the file, outside of classes and in them
@@ -84,17 +84,12 @@ class Reader(SourceReader):
 
     def read_changes(self, root: Any) -> None:
         """Note what the names of the module are bound to, and which are written by parts or as ``global``."""
-        nodes = [*descend(root)]
-        for node in nodes:
-            above, names = list_above(node), bound_by(node)
-            is_local = "function_definition" in above or "lambda" in above
-            is_class, is_import = "class_definition" in above, node.type.startswith(("import", "aliased"))
+        for node in descend(root):
+            names = bound_by(node)
             if node.type == "identifier" and may_be_given(node):
                 self.given.add(text_of(node))
             if node.type == "identifier" and text_of(node).strip("_") == "builtins":
                 names = [*NAMES, ANY]
-            elif node.type == "function_definition":
-                (self.methods if is_class else self.free).add(names[0])
             elif node.type == "global_statement":
                 self.changed |= {text_of(name) for name in named(node)}
             elif node.type == "wildcard_import":
@@ -107,14 +102,18 @@ class Reader(SourceReader):
             elif node.type in ("assignment", "augmented_assignment", "for_statement"):
                 targets = list_targets(node)  # an entry or a member changes what a name of the module holds
                 self.changed |= {n for n, t in zip(names, targets, strict=True) if t.type != "identifier"}
-            if not is_local and not is_class:
-                self.times.update(names)
+            above = list_above(node) if names else []
+            is_local, is_import = "function_definition" in above, node.type.startswith("import")
+            if node.type == "function_definition":
+                (self.methods if "class_definition" in above else self.free).add(names[0])
+            scope = next((kind for kind in above if kind in ("function_definition", "class_definition")), "")
+            if not scope or (scope == "function_definition" and node.type not in FOLLOWED):
+                self.times.update(names)  # what a function binds otherwise may stand for anything there
             is_other = not is_numeric(node) or (is_local and node.type == "import_from_statement")
             if not is_import or is_other:
                 self.rebound |= {*names} & {*NAMES, *self.unit.imported, *CONSTANTS}
-            self.made |= {*(() if is_import and is_decorating(node) else names)}
-        known = {name for name in self.unit.imported if self.times[name] > 1}
-        self.rebound |= known
+            self.made |= {*(() if is_import else names)}
+        self.rebound |= {name for name in self.unit.imported if self.times[name] > 1}
 
     def is_lasting(self, name: str, node: Any) -> bool:
         """True for a name of the module that stands for one thing from its definition on."""
@@ -159,6 +158,8 @@ class Reader(SourceReader):
             body = (self.part("jump", decorator, "a decorator that may change the function", ()),)
         if "class_definition" not in list_above(node) and not self.is_lasting(name, node):
             body = (self.part("jump", node, AGAIN, ()),)
+        if "class_definition" in list_above(node) and self.has_method(node, "__setattr__"):
+            body = (self.part("jump", node, "a class that says itself how its members are set", ()),)
         if any(n.type == "identifier" and not is_normalized("NFKC", text_of(n)) for n in descend(node)):
             body = (self.part("jump", node, "a name that Python takes for another one", ()),)
         arguments = arguments[1:] if arguments and arguments[0].name == "self" else arguments
@@ -353,12 +354,6 @@ def is_numeric(node: Any) -> bool:
             for name in node.children_by_field_name("name")
         )
     )
-
-
-def is_decorating(node: Any) -> bool:
-    """True for an import of a module with decorators that are known."""
-    names = [field_of(node, "module_name"), *node.children_by_field_name("name")]
-    return any(text_of(field_of(name, "name") or name) in DECORATING for name in names)
 
 
 def may_be_given(node: Any) -> bool:
