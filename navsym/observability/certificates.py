@@ -12,7 +12,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from itertools import count, product
+from itertools import chain, count, product
 from math import lcm, prod
 from typing import Any
 
@@ -36,8 +36,8 @@ from navsym.observability.reduction import System, lies_in_ideal
 from navsym.observability.ring import Poly, Ring
 from navsym.observability.tree import linear_places
 
-#: Points tried, terms of the columns and of all remainders, and bits for each state.
-POINTS, COLUMN_TERMS, TERMS, BITS = 6, 4000, 200_000, 96
+#: Points tried, terms of the columns and of all remainders of a constant and of a moving model, bits for each state.
+POINTS, COLUMN_TERMS, TERMS, BITS = 6, (4000, 1500), (200_000, 30_000), 96
 #: Rounds of divisions by all zeros, and steps of Newton's method.
 DIVISIONS, NEWTON = 20, 25
 #: Why there is no certificate.
@@ -105,7 +105,8 @@ class Certifier:
         motion = replace(self.motion, ring=self.motion.ring.with_units(units)) if units else self.motion
         said = Statement(self.model, motion, self.rows, self.bottoms, places, system, rank, units)
         with suppress(NavsymError):
-            columns, free = diagonal_columns(columns, motion.size, motion.ring, system)
+            long = sum(map(len, chain(*columns))) > COLUMN_TERMS[bool(motion.rates)]
+            columns, free = diagonal_columns([] if long else columns, motion.size, motion.ring, system)
             if len(columns) != motion.size - rank:
                 return LONG
             shares = factors_of(said, columns, free, said.zeros) if said.zeros else []
@@ -208,7 +209,7 @@ def diagonal_columns(columns: Matrix, n: int, ring: Ring, system: System | None 
 
     Where the system vanishes, none vanishes in its place.
     """
-    if sum(len(x) for column in columns for x in column) > COLUMN_TERMS:
+    if sum(len(x) for column in columns for x in column) > COLUMN_TERMS[0]:
         return [], []
     places = free_places(columns, n, system or [])
     if len(places) < len(columns):
@@ -233,7 +234,7 @@ def free_places(columns: Matrix, n: int, system: System) -> list[int]:
 def factors_of(said: Statement, columns: Matrix, free: Sequence[int], zeros: System) -> list[list[sp.Expr]] | None:
     """For every remainder of the checker, in its order, the factors of the zeros; None where one was not found."""
     found = []
-    budget = TERMS
+    budget = TERMS[bool(said.motion.rates)]
     for value, bottom in remainders(said, columns, free, zeros):
         budget -= len(value)
         row = as_combination(value, zeros, said) if budget > 0 else None
