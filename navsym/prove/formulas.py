@@ -187,14 +187,6 @@ def choose_order(printed: tuple[str, int] | None, order: Mapping[str, int] | Non
     return dict([printed])
 
 
-def prove_file(path: str | os.PathLike[str], seconds: float, jobs: int, progress: Progress | None) -> Verdicts:
-    """The verdicts of a claim file."""
-    read_toml(path)  # a file that is none is refused before the slow import of the algebra
-    from navsym.prove.claimfile import decide_claims, read_claims
-
-    return decide_claims(read_claims(path, go_on=True), jobs=jobs, seconds=seconds, progress=progress)
-
-
 def read_formula(sides: Sides, given: Mapping[str, Any], beside: Mapping[str, Any]) -> ClaimFile:
     """One formula as a claim file, with the box, tolerance and existing expressions beside it."""
     from navsym.language.values import (
