@@ -73,9 +73,8 @@ def prove(
     """Verdict of a formula, or the verdicts of a claim file.
 
     statement : a formula as text, ``"sin(2*a) = 2*sin(a)*cos(a)"``, a chain of them, ``"a <= b = c"``, or in LaTeX
-                (with a backslash); or its left side, followed by ``relation`` and ``right``; or the path of a
-                claim file (TOML), or its text. A side is text, an exact number, a sympy expression, or rows or a matrix
-                of these.
+                (with a backslash); or its left side, followed by ``relation`` and ``right``; or the path or text of a
+                claim file (TOML). A side is text, an exact number, a sympy expression, or rows or a matrix of these.
     relation  : one of ``= != < <= > >=``
     symbols   : declarations: ``T=("0", "2*pi")`` for a closed range, ``"real"``, ``"positive"``, ``"nonnegative"``,
                 ``"nonzero"``, or a table such as ``u={"vector": 3}``; without one real, or as sympy assumes, and where
