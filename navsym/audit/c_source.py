@@ -45,6 +45,7 @@ DYNAMIC = re.compile(r"(?:Eigen::)?(?:Matrix|Vector)X[fd]")  # whose size is tha
 QUATERNION = re.compile(r"Quaternion[fd]|(Eigen::)Quaternion([fd]|<\w+>)")
 #: What stands between two parts of a name and is no plain number: a call with arguments, or an index.
 COMPUTED = re.compile(r"\(\s*[^)\s]|\[(?!(0|[1-9]\d*)\])")
+ADDRESS = re.compile(r"&\s*[A-Za-z_]\w*", re.ASCII)
 POINTER = ("pointer_declarator", "abstract_pointer_declarator")
 SECONDS = ("pointer_declarator", "reference_declarator")
 
@@ -411,7 +412,10 @@ class Reader(SourceReader):
         moved = text_of(field_of(node, "left") or field_of(node, "argument"))
         match node.type:
             case "assignment_expression" | "update_expression" if moved in self.pointers:
-                return (self.part("moved", node, moved, "a pointer that is set again", identifiers_in(node)),)
+                given = text_of(field_of(node, "right"))  # &x of a variable, or what may lead anywhere
+                is_exact = ADDRESS.fullmatch(given) is not None and given[1:].strip() not in self.pointers
+                why = "a pointer that is set again"
+                return (self.part("moved", node, moved, why, identifiers_in(node), is_exact),)
             case "assignment_expression":
                 sign = text_of(field_of(node, "operator"))[:-1]
                 if sign not in ("", "+", "-", "*", "/"):

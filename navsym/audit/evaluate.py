@@ -88,6 +88,7 @@ class Evaluator:
     shadows : what a block's own names have hidden, one table for each block
     ended   : the names of blocks that have ended
     seconds : pointers and references to what is not known
+    moved   : pointers that were set again -> the names that they may lead to now, None for any
     outputs : what the last function of MATLAB that was read returned
     """
 
@@ -121,6 +122,7 @@ class Evaluator:
     lost_heads: dict[str, Unread] = field(default_factory=dict)
     outputs: list[Value] = field(default_factory=list)
     seconds: list[Variable] = field(default_factory=list)
+    moved: dict[str, tuple[str, ...] | None] = field(default_factory=dict)
 
     @property
     def unit(self) -> Unit:

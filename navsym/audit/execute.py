@@ -165,6 +165,9 @@ class Machine(Evaluator):
             getattr(self, f"run_{statement.kind}")(*statement.parts, statement=statement)
         except Unreadable as refusal:
             self.refuse(statement, refusal.leave(statement))
+        finally:
+            if self.moved and statement.kind != "moved":
+                self.lose_pointees(self.written_by(statement).names, statement.line)
 
     def refuse(self, statement: Part, unread: Unread) -> None:
         """Leave unread what a statement may write."""
@@ -240,15 +243,31 @@ class Machine(Evaluator):
 
     run_jump = run_unread
 
-    def run_moved(self, name: str, why: str, names: tuple[str, ...], statement: Part) -> None:
-        """A pointer that is set again: nobody knows any more what is written through it."""
+    def run_moved(self, name: str, why: str, names: tuple[str, ...], is_exact: bool, statement: Part) -> None:
+        """A pointer that is set again: what it leads to is unread, and a write through it is one to all it may be."""
         unread = Unread(statement.line, why)
-        for known in (name, *names):
-            lose(self.variable(known), unread)
-            self.lose_members(known, unread)
+        self.lose_names((name, *names), unread)
         self.frame[name] = Variable(name, all_unread=unread)
         self.aliases.pop(name, None)
+        self.moved[name] = names if is_exact else None
         raise Unreadable(why)
+
+    def lose_names(self, names: Iterable[str], unread: Unread) -> None:
+        """Leave unread some names and their members."""
+        for name in names:
+            lose(self.variable(name), unread)
+            self.lose_members(name, unread)
+
+    def lose_pointees(self, names: Iterable[str], line: int) -> None:
+        """Leave unread what pointers that were set again may lead to, when it may be written through them."""
+        unread = Unread(line, "what may be written by a pointer that was set again")
+        for name in {head_of(name) for name in names} & self.moved.keys():
+            known = self.moved[name]
+            self.lose_names((name, *(known or ())), unread)
+            if known is None:
+                self.lose(unread)
+                for variable in self.frame.values():
+                    variable.all_unread = unread
 
     def run_fail(self, why: str, statement: Part) -> None:
         raise Failing(why)

@@ -177,7 +177,8 @@ class Reader(SourceReader):
         """What an expression that stands alone does."""
         match node.type:
             case "assignment_expression" if (moved := text_of(field_of(node, "left"))) in self.pointers:
-                return (self.part("moved", node, moved, "a reference that is set again", identifiers_in(node)),)
+                names = identifiers_in(node)
+                return (self.part("moved", node, moved, "a reference that is set again", names, False),)
             case "assignment_expression" | "compound_assignment_expr" if text_of(field_of(node, "operator")) in SIGNS:
                 left, right = self.fields(node, "left", "right")
                 return (self.part("assign", node, left, text_of(field_of(node, "operator"))[:-1], right),)

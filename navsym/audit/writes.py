@@ -100,7 +100,7 @@ def written_alone(unit: Unit, part: Part, entries: Container[str], numbers: Cont
         case "address":
             return Writes(changed=frozenset(mentioned_in(part)))
         case "moved":
-            return Writes(changed=frozenset([first, *part.parts[2]]), others=True)
+            return Writes(changed=frozenset([first, *part.parts[2]]), others=not part.parts[3])
         case "return" | "fail":
             return Writes(leaves=True)
         case "call" | "method" if not is_plain(unit, part, entries):

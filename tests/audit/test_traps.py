@@ -40,3 +40,12 @@ def test_most_of_what_has_a_right_reading_is_read(tmp_path):
     known = [(re.split(r" \| ", head), source) for head, _, source in TRAPS if " | - | " not in head]
     proved = [ask(tmp_path, source, *head[:3]) == "PROVED" for head, source in known]
     assert sum(proved) >= 0.6 * len(proved) > 20
+
+
+def test_a_pointer_that_is_set_to_one_variable_leaves_the_others_read(tmp_path):
+    source = (
+        "double a, b, c;\ndouble f(double x) {\n  double *q = &a;\n  q = &b;\n  c = 2*x;\n  *q = 5;\n  return c;\n}\n"
+    )
+    assert ask(tmp_path, source, ".c", "return", "2*x") == "PROVED"
+    assert ask(tmp_path, source.replace("&b;", "&c;"), ".c", "return", "2*x") == "OPEN"
+    assert ask(tmp_path, source.replace("q = &b;", "q = p(x);"), ".c", "return", "2*x") == "OPEN"
