@@ -228,7 +228,7 @@ explain("K.fold")
 explain("K.longer")
 
 # %%
-one, two = ([float(value) for value in row] for row in interval.mean_square_distances())
+one, two = ([float(interval.mean_of(share).ball.mid()) for share in row] for row in interval.squared_distances())
 figure, axis = plt.subplots(figsize=(5, 3))
 steps = np.arange(1, len(one) + 1)
 axis.bar(steps - 0.18, one, 0.36, color=ORANGE, label="K = 1")

@@ -255,7 +255,12 @@ def shorten_point(document: Document, point: Mapping[str, str]) -> dict[str, str
 
     Beside sines and their like an angle stays a multiple of pi.
     """
-    (case, *others), box = player.read_statement(document)
+    if all(len(text) <= SHORT for text in point.values()):
+        return dict(point)
+    try:
+        (case, *others), box = player.read_statement(document)
+    except REFUSALS:  # it asks for answers at the point
+        return dict(point)
     is_wave = any(part[0] in WAVES for term in case.terms for part in subterms(term))
     kept = {name for name, text in point.items() if len(text) <= SHORT or (is_wave and "pi" in text)}
     shorter = dict(point)
