@@ -59,7 +59,12 @@ def name_entries(subject, names, point):
 
 
 @pytest.mark.parametrize(
-    ("language", "every"), [("python", 5), ("matlab", 1), pytest.param("python", 1, marks=pytest.mark.long)]
+    ("language", "every"),
+    [
+        pytest.param("python", 5, marks=pytest.mark.long),
+        ("matlab", 1),
+        pytest.param("python", 1, marks=pytest.mark.long),
+    ],
 )
 def test_what_is_read_of_a_call_is_what_runs(language, every):
     """Calls with no, one, two or three numbers, vectors and matrices: each is read rightly, or refused."""

@@ -30,6 +30,7 @@ CARD = EXAMPLES / "card.toml"
 WORDS = read_toml(CARD)["card"]
 
 
+@pytest.mark.long
 def test_the_model_of_a_card_has_that_card_and_those_that_are_equal():
     found = nav.conventions(CARD)
     assert found.complete and all(found.cards[0].words()[name] == word for name, word in WORDS.items())

@@ -325,6 +325,7 @@ def groves_with_an_antenna(turning: str) -> dict[str, Any]:
     return document | {"measured": {"position": [1, 2, 3], "velocity": [4, 5, 6]}, "known": {"frame": "earth"}}
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("turning", CHOICES["arm_rate"])
 def test_the_rate_of_the_earth_in_a_lever_arm_is_kept_or_its_value_or_dropped(turning):
     found = nav.conventions(groves_with_an_antenna(turning))

@@ -73,6 +73,7 @@ def readings(answer: nav.Conventions) -> set[tuple[str | None, ...]]:
     return {(c.quaternion_algebra, c.quaternion_direction, c.quaternion_order) for c in answer.cards}
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("reading", READINGS, ids=", ".join)
 def test_the_convention_of_a_quaternion_is_found_with_the_other_one_that_is_the_same_rotation(reading):
     answer = nav.conventions(with_quaternion(rotation(*reading)))

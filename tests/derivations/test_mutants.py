@@ -60,6 +60,7 @@ def judge(case):
     return f"{identity}: {mutant} is {verdict.status} against derived and {same.status} against printed"
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("name", "sampled", "most"), SAMPLES)
 def test_a_sample_of_the_mutants_of_a_paper_falls(name, sampled, most):
     source = random.Random(1)

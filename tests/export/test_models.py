@@ -232,6 +232,7 @@ W = {"w": sp.Symbol("w", positive=True), "s": sp.Symbol("s", positive=True)}
 ROWS = {"place": (sp.Matrix([[1, 0]]), sp.Rational(1, 100)), "both": (sp.Matrix([[sp.Rational(1, 2), 3]]), W["s"] ** 2)}
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", ROWS)
 def test_the_c_of_an_update_is_proved_to_be_josephs_form(oscillator, name):
     code = read_back(oscillator[0] / "c" / f"swing_update_{name}.c", W)

@@ -33,6 +33,7 @@ def test_names_of_values_differ_from_each_other_and_from_all_that_is_taken() -> 
     assert len(set(known)) == len(known) and all(name.isidentifier() and len(name) < 64 for name in found)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("name", PROGRAMS)
 def test_every_argument_result_and_field_of_a_program_has_a_unit(name: str) -> None:
     start, step = programs.functions(name)

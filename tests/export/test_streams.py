@@ -174,6 +174,7 @@ def test_the_bounds_of_a_block_enclose_the_radius_of_the_guard(norm, shape, near
     assert seen > 30
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("norm", "shape"), [("l1", None), ("l2", BALL)])
 def test_a_block_is_exported_and_c_and_twin_agree_bit_for_bit(norm, shape, tmp_path):
     block = {"measurements": "z1 z2", "norm": norm} | ({"shape": shape} if shape else {})

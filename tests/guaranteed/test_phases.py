@@ -43,6 +43,7 @@ def monomials(degree):
     return {"basis": {"variable": "s", "H": rows, "interval": ["0", "T"]}, "parameters": {"T": ["0", "10"]}}
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("state", "ends"), [("y1", []), ("y2", ["4*pi/3", "3*pi/2"]), ("y3", ["2*pi/3", "pi"])])
 def test_the_velocity_problem_is_proved_up_to_a_full_period(state, ends):
     answer = find_phases(family(VELOCITY, state), sp.Integer(0), 2 * sp.pi)

@@ -92,6 +92,7 @@ def assert_agrees(found, exact):
     assert_allclose(found.log_likelihood, logs, rtol=1e-12, atol=1e-11)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("method", SCHEMES)
 def test_fifty_changing_banks_with_gaps_agree_with_rational_arithmetic_in_every_engine_and_form(method):
     for seed in range(50):

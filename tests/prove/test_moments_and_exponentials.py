@@ -116,6 +116,7 @@ def test_an_exponential_of_numbers_agrees_with_scipy(seed):
             assert nav.prove(f"expm({text})[{i},{j}] = {near} + 1/1000", tolerance="1e-8").status == "REFUTED"
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("degree", range(1, 9))
 def test_moments_agree_with_gauss_hermite_quadrature(degree):
     points, weights = np.polynomial.hermite_e.hermegauss(20)

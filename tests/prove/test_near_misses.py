@@ -25,6 +25,7 @@ EQUATIONS = [
 FALSE = ("{0} = {1} - 1e-30", "{0} >= {1} + 1e-25", "{0} < {1}", "{0} != {1}")
 
 
+@pytest.mark.long
 @pytest.mark.parametrize(("left", "right", "symbols"), EQUATIONS, ids=[left for left, _, _ in EQUATIONS])
 def test_an_equation_holds_and_its_near_misses_do_not(left, right, symbols):
     assert nav.prove(f"{left} = {right}", **symbols).status == PROVED

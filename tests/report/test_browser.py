@@ -167,6 +167,7 @@ def real(tmp_path_factory):
     return folder
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("width", [360, 768, 1280])
 def test_the_pages_of_real_papers_fit_phone_tablet_and_desk(real, browser, width):
     browser.call("Emulation.setDeviceMetricsOverride", width=width, height=800, deviceScaleFactor=1, mobile=width < 500)

@@ -94,6 +94,7 @@ def test_ties_that_rounding_hides_are_settled_by_fractions():
     assert max(float(q) for q in exact) < 1e-20
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("kind", ["rounded", "integers", "steps"])
 def test_unique_is_never_claimed_for_a_tie_nor_a_tie_for_a_difference(kind):
     for seed in range(30):

@@ -105,6 +105,7 @@ def test_the_root_of_the_noise_gives_the_noise(n, dt):
         assert_allclose(found, expected, rtol=1e-13)
 
 
+@pytest.mark.long
 @pytest.mark.parametrize("n", [2, 3, 5])
 @pytest.mark.parametrize("ratio", [1.0, 1e4, 1e9])
 def test_a_first_spread_far_above_the_noise_costs_no_digits(n, ratio):

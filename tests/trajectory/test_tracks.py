@@ -322,6 +322,7 @@ def test_a_manoeuvre_is_not_an_outlier():
     assert "outlier" not in found.flags
 
 
+@pytest.mark.long
 def test_the_smoother_beats_the_filter_and_both_beat_differences():
     t, truth, measured = simulated(7, sigma=3.0, q=0.005)
     rms = {}
