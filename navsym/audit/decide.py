@@ -158,7 +158,7 @@ def write_equation(left: str, right: str, symbols: Mapping[str, Any], given: Seq
 def prove_document(document: Document) -> Document | None:
     """The certificate of an identity that the checker has granted; None where it has not."""
     (case,), box = player.read_statement(document)
-    witness = find_witness(case.terms, box)
+    witness = find_witness(case.terms, box)[1]
     if witness is None or not all(player.is_identity(goal.term) for goal in case.goals):
         return None
     certificate = write_proof(document, witness, [IDENTITY for _ in case.goals])
@@ -194,7 +194,7 @@ def prove_shared(pairs: Sequence[tuple[Tree, Tree]], scope: Scope) -> dict[tuple
 def search_proof(document: Document, scope: Scope, rounds: Rounds, why: str = "") -> Decision:
     """What the search for proof trees makes of the statement; ``why`` it is left open otherwise."""
     (case,), box = player.read_statement(document)
-    witness = find_witness(case.terms, box) if "given" not in document else find_related(case.terms, box, scope)
+    witness = find_witness(case.terms, box)[1] if "given" not in document else find_related(case.terms, box, scope)
     if witness is None:
         return Decision(OPEN, why="no point was found at which both sides have a value")
     proofs = [find_proof(goal, rounds=rounds) for goal in case.goals]

@@ -16,7 +16,7 @@ from decimal import Decimal
 from typing import Any
 
 import sympy as sp
-from flint import arb, fmpq
+from flint import arb, ctx, fmpq
 
 from navsym import checker
 from navsym.claims.statement import Bound, Equation, Optimum, Property, Statement, state
@@ -345,7 +345,7 @@ def prove_document(document: Document, verdict: Verdict, seconds: float) -> Docu
     """The certificate of one entry, not granted yet; None where no proof is found."""
     cases, box = player.read_statement(document)
     goals = [goal for case in cases for goal in case.goals]
-    witness = find_witness(cases[0].terms, box)
+    bits, witness = find_witness(cases[0].terms, box)
     if witness is None:
         return None
     if verdict.method.startswith("normal form") and len(goals) == 1 and goals[0].relation == "=":
@@ -358,12 +358,23 @@ def prove_document(document: Document, verdict: Verdict, seconds: float) -> Docu
         proofs = [find_proof(goal, seconds) for goal in goals]
     if any(proof is None for proof in proofs):
         return None
-    return {"kind": "proof", "statement": document, "bits": BITS[0], "witness": witness, "proofs": proofs}
+    return {"kind": "proof", "statement": document, "bits": bits, "witness": witness, "proofs": proofs}
 
 
-def find_witness(terms: Sequence[Any], box: Mapping[str, Any]) -> dict[str, str] | None:
-    """A point of the box at which all terms have a value, simple where possible."""
-    return next((write_point(point) for point, _ in defined_points(terms, box)), None)
+def find_witness(terms: Sequence[Any], box: Mapping[str, Any]) -> tuple[int, dict[str, str] | None]:
+    """A point of the box at which all terms have a value, simple where possible, and the bits that show it.
+
+    The root of 1 - cos(3e-14) takes more bits than most.
+    """
+    before = ctx.prec
+    try:
+        for bits in BITS:
+            ctx.prec = bits
+            for point, _ in defined_points(terms, box):
+                return bits, write_point(point)
+    finally:
+        ctx.prec = before
+    return BITS[0], None
 
 
 def defined_points(terms: Sequence[Any], box: Mapping[str, Any]) -> Iterator[tuple[dict[str, fmpq], dict[str, Any]]]:

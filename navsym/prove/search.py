@@ -17,12 +17,14 @@ from flint import ctx
 
 from navsym.core.errors import NavsymError
 from navsym.prove.relations import cofactors
-from navsym.prove.rooms import equations, forms, quadrics, signs
+from navsym.prove.rooms import equations, forms, letters, quadrics, signs
 from navsym.prove.rooms.goals import Hole, Holes, Proof, Room, fails, player, sample_goal, subterms, vanishes
 
 Rounds = Sequence[tuple[int, int, int]]
 ROOMS: dict[str, Room] = {
-    name: room for module in (cofactors, equations, forms, quadrics, signs) for name, room in vars(module).items()
+    name: room
+    for module in (cofactors, equations, forms, letters, quadrics, signs)
+    for name, room in vars(module).items()
 }
 
 
@@ -38,18 +40,18 @@ EQUATIONS = (
         "exponents equal_squares known_signs"
     ),
     choose(
-        "roots_of_symbols sums_of_hypotheses logarithms_of_products empty_case bounds_that_meet integers "
+        "letters roots_of_symbols sums_of_hypotheses logarithms_of_products empty_case bounds_that_meet integers "
         "sides_of_zero gradient"
     ),
 )
 SIGNS = (
     choose(
         "number positive_radicand existence identity elimination sums_of_hypotheses "
-        "range roots bounds corners product sum few_balls values side squares cones forms quadrics"
+        "range roots bounds corners product letters common_parts sum few_balls values side squares cones forms quadrics"
     ),
     choose(
         "constant known_signs cofactors hypothesis cases quadratic roots_of_symbols substitution slope "
-        "contacts modulus logarithms empty_case integers"
+        "contacts tails modulus logarithms empty_case integers"
     ),
     choose("concavity many_balls"),
 )

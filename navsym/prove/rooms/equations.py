@@ -12,10 +12,13 @@ from flint import arb, fmpq
 
 from navsym.language.expression import to_text
 from navsym.prove.rooms.goals import (
+    MOST_INDEX,
     Hole,
     Holes,
     Proof,
+    Term,
     factor,
+    index_of,
     is_below,
     is_root,
     player,
@@ -96,9 +99,7 @@ def by_cases(goal: Any, sample: list[arb]) -> Iterator[Proof]:
 
 def by_modulus(goal: Any, sample: list[arb]) -> Iterator[Proof]:
     """sqrt(u) and |u| as what they are where its sign is known."""
-    for part in dict.fromkeys(p for p in subterms(goal.term) if p[0] in ("sqrt", "abs", "^")):
-        if part[0] == "^" and not (player.constant_of(part[2]) or fmpq(1)).q > 1:
-            continue
+    for part in dict.fromkeys(filter(is_root, subterms(goal.term))):
         inside = to_sympy(part[1])
         if inside.has(sp.sin, sp.cos) and sp.count_ops(inside) < 60:
             inside = sp.trigsimp(factor(inside))  # by sin(x)**2 + cos(x)**2 = 1
@@ -181,14 +182,19 @@ def solve_for(atom: str, value: str, share: str = "1") -> Proof:
 LONGEST = 600
 
 
+def is_exponential(power: Term) -> bool:
+    """Whether an exponent is no number, or one with too long a divisor for a root."""
+    return player.constant_of(power[2]) is None or index_of(power) > MOST_INDEX
+
+
 def by_logarithms_of_products(goal: Any, sample: list[arb]) -> Iterator[Proof]:
-    """Logarithms as sums over the factors of what they are of; symbolic powers as exponentials first."""
+    """Logarithms as sums over the factors of what they are of; powers such as a**b, a**5.25588 as exponentials first."""
     if len(write_term(goal.term)) > LONGEST:
         return  # many digits, of which factors are sought for long
-    powers = [p for p in subterms(goal.term) if p[0] == "^" and player.constant_of(p[2]) is None]
+    powers = [p for p in subterms(goal.term) if p[0] == "^" and is_exponential(p)]
     if powers:
         term = goal.term
-        for part in dict.fromkeys(powers):
+        for part in dict.fromkeys(reversed(powers)):  # the outer ones first
             term = player.replace(term, part, ("exp", ("*", part[2], ("log", part[1]))))
         yield {"rule": "equal", "to": write_term(term), "defined": Holes(), "proof": Hole()}
     for part in dict.fromkeys(p for p in subterms(goal.term) if p[0] == "log"):
@@ -208,7 +214,8 @@ def by_exponents(goal: Any, sample: list[arb]) -> Iterator[Proof]:
     proof: Proof = Hole()
     for exponent in dict.fromkeys(p[1] for p in subterms(goal.term) if p[0] == "exp"):
         plain = to_text(sp.cancel(to_sympy(exponent)))
-        if player.parse(plain) != exponent:
+        is_left = any(p[0] == "log" and p[1][0] == "exp" for p in subterms(exponent))  # to the room of logarithms
+        if player.parse(plain) != exponent and not is_left:
             proof = rewrite_atom(write_term(exponent), plain) | {"equal": {"rule": "identity"}, "proof": proof}
     if not proof:
         form = to_text(sp.powsimp(to_sympy(goal.term), combine="exp"))

@@ -93,14 +93,14 @@ def by_one_angle(goal: Any, sample: list[arb]) -> Iterator[Proof]:
 
 
 def by_substitution(goal: Any, sample: list[arb]) -> Iterator[Proof]:
-    """One number u in the place of an exponential, a root, a tangent of a half angle, or what alone has its symbols."""
+    """One number u in the place of an exponential, a root or a tangent of a half angle."""
     expression = to_sympy(goal.term)
     u = sp.Symbol("u_", real=True)
     name = "u"
     while name in goal.box:
         name += "u"
     new = symbol(name)
-    for make in (by_exponentials, by_root, by_tangent, by_lonely_parts):
+    for make in (by_exponentials, by_root, by_tangent):
         for term, form, ends, dense in make(expression, u):
             to = to_text(factor(form.xreplace({u: new})))
             body = abstract({name: to_text(term)}, {name: [*ends, []]}, to)
@@ -131,18 +131,6 @@ def count_steps(nodes: set[Any]) -> tuple[sp.Symbol | None, Any, dict[Any, int]]
     d = sp.ilcm(1, *(s.q for s in shares.values()))
     step = sp.Rational(sp.igcd(0, *(int(s * d) for s in shares.values())), d)
     return x, step, {node: int(s / step) for node, s in shares.items()}
-
-
-def by_lonely_parts(expression: sp.Expr, u: sp.Symbol) -> Iterator[Form]:
-    """u = a square or an absolute value, or what a function is taken of, whose symbols stand nowhere else."""
-    parts = {p: UPWARD for p in expression.atoms(sp.Pow, sp.Abs) if p.func is sp.Abs or p.exp == 2}
-    parts |= {f.args[0]: FREE for f in expression.atoms(sp.Function) if f.args[0].is_Add and f.func is not sp.Abs}
-    parts |= {f.args[0]: ("0", "1") for f in expression.atoms(sp.asin)}
-    for part, ends in sorted(parts.items(), key=str):
-        form = expression.xreplace({part: u})
-        is_plain = part.is_Symbol or (ends is UPWARD and part.args[0].is_Symbol)
-        if part.free_symbols and not is_plain and not form.free_symbols & part.free_symbols:
-            yield part, form, ends, None
 
 
 def by_root(expression: sp.Expr, u: sp.Symbol) -> Iterator[Form]:

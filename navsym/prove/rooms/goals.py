@@ -11,6 +11,8 @@ from typing import Any
 
 import sympy as sp
 from flint import Ordering, arb, fmpq, fmpq_mpoly_ctx
+from sympy.polys.polyerrors import BasePolynomialError
+from sympy.polys.polyutils import dict_from_expr
 
 from navsym import checker
 from navsym.core.exact import to_fmpq, to_rational
@@ -52,6 +54,8 @@ def load_player() -> Any:
 player = load_player()
 player.MOST_EFFORT = 30_000  # what takes longer is no candidate
 MOST_KEPT = 1 << 14
+#: The degree up to which polynomials are factored: exp(-10**12*x) is a power of exp(-x).
+MOST_DEGREE = 1000
 
 
 def keep_by_identity(function: Callable[[Term], Any]) -> Callable[[Term], Any]:
@@ -133,16 +137,17 @@ def factor(expression: sp.Expr) -> sp.Expr:
     result = sp.Integer(1)
     for part, sign in zip(sp.fraction(sp.together(expression)), (1, -1), strict=True):
         try:
-            whole = sp.Poly(part) if part.free_symbols else None
-        except sp.polys.polyerrors.BasePolynomialError:  # x - x, which nobody has expanded
-            whole = None
-        if whole is None or not (whole.domain.is_ZZ or whole.domain.is_QQ):
+            terms, letters = dict_from_expr(part)
+        except BasePolynomialError:  # a number, or x - x, which nobody has expanded
+            terms, letters = {}, ()
+        is_plain = all(c.is_Rational and 0 < len(e) and max(e) <= MOST_DEGREE for e, c in terms.items())
+        if not terms or not is_plain:
             result *= part**sign
             continue
-        context = fmpq_mpoly_ctx.get([f"g{k}" for k in range(len(whole.gens))], Ordering.lex)
-        content, factors = factor_exactly(context.from_dict({powers: to_fmpq(c) for powers, c in whole.terms()}))
+        context = fmpq_mpoly_ctx.get([f"g{k}" for k in range(len(letters))], Ordering.lex)
+        content, factors = factor_exactly(context.from_dict({powers: to_fmpq(c) for powers, c in terms.items()}))
         for polynomial, power in factors:
-            result *= polynomial_sum(whole.gens, polynomial) ** (sign * int(power))
+            result *= polynomial_sum(letters, polynomial) ** (sign * int(power))
         result *= to_rational(content) ** sign
     return result
 
@@ -155,9 +160,20 @@ def subterms(term: Term) -> Iterator[Term]:
     yield term
 
 
+#: The index of a root up to which it is taken away by powers; x**5.25588 is an exponential instead.
+MOST_INDEX = 60
+
+
+def index_of(part: Term) -> int:
+    """2 for a square root, n for a power with exponent m/n, else 1."""
+    if part[0] == "sqrt":
+        return 2
+    return int((player.constant_of(part[2]) or fmpq(1)).q) if part[0] == "^" else 1
+
+
 def is_root(part: Term) -> bool:
     """Whether a term is a root or an absolute value."""
-    return part[0] in ("sqrt", "abs") or (part[0] == "^" and (player.constant_of(part[2]) or fmpq(1)).q > 1)
+    return part[0] == "abs" or 1 < index_of(part) <= MOST_INDEX
 
 
 def join(terms: Sequence[Term]) -> Term:
@@ -174,9 +190,9 @@ def sample_goal(goal: Any, is_strict: bool = False) -> list[arb]:
     None where something has to be 0: points of the box hardly meet that. ``is_strict`` leaves out ends that do not
     belong to a range, and points at which something else has no value.
     """
-    if goal.zeros:
-        return []
     within = (*goal.given, *(goal.exists if is_strict else ()))
+    if list_bonds(goal.zeros, (goal.term, *within)):
+        return []
     names = sorted(player.symbols_of(goal.term).union(*map(player.symbols_of, within)))
     values: list[arb] = []
     wanted = len(SHARES) + 4
@@ -190,6 +206,16 @@ def sample_goal(goal: Any, is_strict: bool = False) -> list[arb]:
         if value.is_finite() and not (is_strict and is_outside(goal, place)):
             values.append(value)
     return values
+
+
+def list_bonds(zeros: Sequence[Term], others: Sequence[Term]) -> list[Term]:
+    """What has to be 0, without what only gives a symbol, linear in it, that stands nowhere else: u = sqrt(a**2 + 1)."""
+    for k, zero in enumerate(zeros):
+        rest = [*zeros[:k], *zeros[k + 1 :]]
+        names = player.symbols_of(zero).difference(*map(player.symbols_of, (*rest, *others)))
+        if any(player.constant_of(player.differentiate(zero, name)) for name in names):
+            return list_bonds(rest, others)
+    return [*zeros]
 
 
 def ball_of(term: Term, place: dict[str, Any]) -> arb:

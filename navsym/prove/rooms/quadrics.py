@@ -18,15 +18,16 @@ from flint import Ordering, arb, fmpq, fmpq_mpoly, fmpq_mpoly_ctx
 
 from navsym.prove.rooms.goals import Hole, Holes, Proof, Term, player, write_number, write_term
 
-MOST_SYMBOLS, MOST_HYPOTHESES = 20, 60
+MOST_SYMBOLS, MANY_SYMBOLS, MOST_HYPOTHESES = 20, 4, 60
 DENOMINATORS = (1, 2, 4, 3, 6, 8, 12, 5, 60)
 Rows = list[list[fmpq]]
 
 
 def by_quadrics(goal: Any, sample: list[arb]) -> Iterator[Proof]:
     """The rule ``modulo`` to a sum of squares and of hypotheses >= 0."""
-    if goal.relation != ">=" or not (goal.zeros or goal.given):
-        return
+    is_free = not (goal.zeros or goal.given)
+    if goal.relation != ">=" or (is_free and len(player.symbols_of(goal.term)) < MANY_SYMBOLS):
+        return  # few symbols are soon completed to squares one after the other
     found = find_sum(goal.term, goal.zeros, goal.given)
     if found is not None:
         total, cofactors, proofs = found

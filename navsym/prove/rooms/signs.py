@@ -203,11 +203,28 @@ def by_sum(goal: Any, sample: list[arb]) -> Iterator[Proof]:
         return
     values = [values_of(goal, term) for term in terms]
     if any(is_below(v) for v in values):
+        yield from separate([*flatten(goal.term)])
         yield from split_slack(goal)
         return
     strict = [k for k, v in enumerate(values) if v and all(x > 0 for x in v)]
+    strict.sort(key=lambda k: bool(player.symbols_of(terms[k])))  # numbers first
     for k in strict[:3] if goal.relation == ">" else [0]:
         yield {"rule": "sum", "proofs": Holes(), "strict": k}
+
+
+def separate(terms: list[Term]) -> Iterator[Proof]:
+    """The terms of each symbol for themselves, where no two have one in common; what remains above 0 is strict."""
+    groups: list[list[Term]] = []
+    for term in terms:
+        names = player.symbols_of(term)
+        joined = [g for g in groups if names & player.symbols_of(join(g))]
+        groups = [g for g in groups if g not in joined] + [[t for g in joined for t in g] + [term]]
+    moving = [g for g in groups if player.symbols_of(join(g))]
+    numbers = [t for g in groups if g not in moving for t in g]
+    if len(moving) > 1:
+        whole = ("+", *(("*", player.ONE, join(g)) for g in moving), join(numbers or [player.ZERO]))
+        proof: Proof = {"rule": "sum", "proofs": Holes(), "strict": len(moving)}
+        yield {"rule": "equal", "to": write_term(whole), "defined": Holes(), "proof": proof}
 
 
 def split_slack(goal: Any) -> Iterator[Proof]:
@@ -360,6 +377,21 @@ def choose_pair(terms: dict[Any, Any], negative: dict[Any, Any], depth: int) -> 
 def shift_power(exponents: Any, i: int, j: int) -> tuple[int, ...]:
     """One power moved from y_j to y_i."""
     return tuple(int(e) + (k == i) - (k == j) for k, e in enumerate(exponents))
+
+
+def by_tails(goal: Any, sample: list[arb]) -> Iterator[Proof]:
+    """A range without an end: cut behind the last place where the slope of the term turns."""
+    for name in sorted(player.symbols_of(goal.term)) if goal.relation != "!=" else ():
+        limit = goal.box[name]
+        if len(player.symbols_of(goal.term)) > 1 or not (limit.low is None or limit.high is None):
+            continue
+        slope = player.differentiate(goal.term, name)
+        for sign in [s for s, end in ((1, limit.high), (-1, limit.low)) if end is None]:
+            far = [sign * fmpq(2) ** k for k in range(-3, 8)]
+            rises = [bool(player.value_of(slope, {name: player.Jet(arb(x))}) * sign > 0) for x in far]
+            turns = [k for k, rise in enumerate(rises) if not rise]
+            if turns and turns[-1] < len(far) - 2 and player.is_inside(player.number(far[turns[-1] + 1]), limit):
+                yield {"rule": "split", "symbol": name, "at": str(far[turns[-1] + 1]), "proofs": Holes()}
 
 
 def by_contacts(goal: Any, sample: list[arb]) -> Iterator[Proof]:
