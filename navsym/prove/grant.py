@@ -364,16 +364,12 @@ def prove_document(document: Document, verdict: Verdict, seconds: float) -> Docu
 def find_witness(terms: Sequence[Any], box: Mapping[str, Any]) -> tuple[int, dict[str, str] | None]:
     """A point of the box at which all terms have a value, simple where possible, and the bits that show it.
 
-    The root of 1 - cos(3e-14) takes more bits than most.
+    That sqrt(1 - cos(3e-14)) has a value takes more bits than most.
     """
-    before = ctx.prec
-    try:
-        for bits in BITS:
-            ctx.prec = bits
+    for bits in BITS:
+        with ctx.workprec(bits):
             for point, _ in defined_points(terms, box):
                 return bits, write_point(point)
-    finally:
-        ctx.prec = before
     return BITS[0], None
 
 
@@ -407,9 +403,10 @@ def judge_without_proof(documents: Sequence[Document], document: Document, verdi
 def find_failure(document: Document) -> dict[str, str] | None:
     """A point at which a sample breaks the statement."""
     (case,), box = player.read_statement(document)
-    for point, place in defined_points(case.terms, box):
-        if any(player.FAILURES[goal.relation](player.value_of(goal.term, place)) for goal in case.goals):
-            return write_point(point)
+    with ctx.workprec(find_witness(case.terms, box)[0]):
+        for point, place in defined_points(case.terms, box):
+            if any(player.FAILURES[goal.relation](player.value_of(goal.term, place)) for goal in case.goals):
+                return write_point(point)
     return None
 
 

@@ -36,11 +36,11 @@ def choose(names: str) -> tuple[Room, ...]:
 #: The rooms in the order of their cost: cheap ones, those that think longer, those of the last resort.
 EQUATIONS = (
     choose(
-        "algebra one_angle cofactors elimination modulus values values_of_constants inverse factors_of_roots "
+        "algebra one_angle cofactors elimination letters modulus values values_of_constants inverse factors_of_roots "
         "exponents equal_squares known_signs"
     ),
     choose(
-        "letters roots_of_symbols sums_of_hypotheses logarithms_of_products empty_case bounds_that_meet integers "
+        "roots_of_symbols sums_of_hypotheses logarithms_of_products empty_case bounds_that_meet integers "
         "sides_of_zero gradient"
     ),
 )

@@ -188,7 +188,7 @@ def is_exponential(power: Term) -> bool:
 
 
 def by_logarithms_of_products(goal: Any, sample: list[arb]) -> Iterator[Proof]:
-    """Logarithms as sums over the factors of what they are of; powers such as a**b, a**5.25588 as exponentials first."""
+    """Logarithms as sums over the factors of what they are of; a**b and a**5.25588 as exponentials first."""
     if len(write_term(goal.term)) > LONGEST:
         return  # many digits, of which factors are sought for long
     powers = [p for p in subterms(goal.term) if p[0] == "^" and is_exponential(p)]

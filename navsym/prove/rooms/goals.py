@@ -140,7 +140,7 @@ def factor(expression: sp.Expr) -> sp.Expr:
             terms, letters = dict_from_expr(part)
         except BasePolynomialError:  # a number, or x - x, which nobody has expanded
             terms, letters = {}, ()
-        is_plain = all(c.is_Rational and 0 < len(e) and max(e) <= MOST_DEGREE for e, c in terms.items())
+        is_plain = all(c.is_Rational and len(e) > 0 and max(e) <= MOST_DEGREE for e, c in terms.items())
         if not terms or not is_plain:
             result *= part**sign
             continue
@@ -209,7 +209,7 @@ def sample_goal(goal: Any, is_strict: bool = False) -> list[arb]:
 
 
 def list_bonds(zeros: Sequence[Term], others: Sequence[Term]) -> list[Term]:
-    """What has to be 0, without what only gives a symbol, linear in it, that stands nowhere else: u = sqrt(a**2 + 1)."""
+    """What has to be 0, without what only gives a symbol that stands nowhere else: u = sqrt(a**2 + 1)."""
     for k, zero in enumerate(zeros):
         rest = [*zeros[:k], *zeros[k + 1 :]]
         names = player.symbols_of(zero).difference(*map(player.symbols_of, (*rest, *others)))

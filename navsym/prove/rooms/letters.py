@@ -7,11 +7,11 @@ exp(x + y) >= 1 + x + y all of x + y is u.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from typing import Any, NamedTuple
 
 import sympy as sp
-from flint import arb, fmpq
+from flint import arb
 
 from navsym.language.expression import symbol, to_text
 from navsym.prove.rooms.goals import Proof, Term, abstract, player, subterms, to_sympy, write_term
@@ -38,10 +38,15 @@ class Span(NamedTuple):
     open_low: bool = False
     open_high: bool = False
 
+    def raise_by(self, function: Callable[[Term], Term]) -> Span:
+        """The span of a rising function that has no limit at infinity."""
+        low, high = (None if end is None else fold(function(end)) for end in (self.low, self.high))
+        return Span(low, high, self.open_low, self.open_high)
+
     def turn(self) -> Span:
         """The span of the negative."""
-        low, high = (None if end is None else fold(player.negate(end)) for end in self[:2])
-        return Span(high, low, self.open_high, self.open_low)
+        low, high, *flags = self.raise_by(player.negate)
+        return Span(high, low, *reversed(flags))
 
     def write(self) -> list[Any]:
         """The range of a new symbol."""
@@ -65,7 +70,7 @@ def by_letters(goal: Any, sample: list[arb]) -> Iterator[Proof]:
 
 
 def by_common_parts(goal: Any, sample: list[arb]) -> Iterator[Proof]:
-    """A number u in the place of a sum that leaves fewer symbols or irrational numbers, though it stands elsewhere too."""
+    """A number u in the place of a sum whose symbols stand elsewhere too, where fewer of them remain."""
     for part, name in list_parts(goal):
         form = player.replace(goal.term, part, ("symbol", name))
         linear, u = to_sympy(part) if part[0] == "+" else sp.S.Zero, symbol(name)
@@ -118,7 +123,9 @@ def count_numbers(expression: sp.Expr) -> int:
 
 
 def fold(end: Term) -> Term:
-    """A rational number as one, any other term as it is."""
+    """A rational number as one, any other term as it is; the algebra of the player takes no root of 0."""
+    if end[0] in ("^", "abs") and end[1] == player.ZERO:
+        return player.ZERO
     value = player.constant_of(end)
     return end if value is None else player.number(value)
 
@@ -141,8 +148,8 @@ def find_span(term: Term, box: Any) -> Span | None:
     if kind == "^":
         return span_of_power(term, box)
     inner = find_span(term[1], box)
-    if inner is None:
-        return None
+    if inner is None or any(end is not None and player.constant_of(end) is None for end in inner[:2]):
+        return None  # values at ends that are no fractions are long to compare
     if kind in ("sin", "cos"):
         return Span(player.MINUS_ONE, player.ONE) if None in inner[:2] else None
     if kind in ("cosh", "abs"):
@@ -159,8 +166,9 @@ def span_of_sum(term: Term, box: Any) -> Span | None:
             return None
         seen |= player.symbols_of(part)
         spans.append(span)
-    ends = [None if any(s[k] is None for s in spans) else fold(("+", *(s[k] for s in spans))) for k in (0, 1)]
-    return Span(*ends, any(s.open_low for s in spans), any(s.open_high for s in spans))
+    lows, highs, *flags = zip(*spans, strict=True)
+    low, high = (None if None in ends else fold(("+", *ends)) for ends in (lows, highs))
+    return Span(low, high, *map(any, flags))
 
 
 def span_of_product(term: Term, box: Any) -> Span | None:
@@ -174,7 +182,7 @@ def span_of_product(term: Term, box: Any) -> Span | None:
         return None
     if value < 0:
         inner, share = inner.turn(), player.negate(share)
-    return Span(*(None if end is None else fold(("*", share, end)) for end in inner[:2]), *inner[2:])
+    return inner.raise_by(lambda end: ("*", share, end))
 
 
 def span_of_power(term: Term, box: Any) -> Span | None:
@@ -190,37 +198,38 @@ def span_of_power(term: Term, box: Any) -> Span | None:
         return fold_at_zero(inner, power)
     if q.q > 1 and (inner.low is None or player.value_of(inner.low, {}) < 0):
         inner = inner._replace(low=player.ZERO, open_low=False)
-    return Span(*(None if end is None else fold(power(end)) for end in inner[:2]), *inner[2:])
+    return inner.raise_by(power)
 
 
 def raise_ends(kind: str, inner: Span) -> Span:
-    """The span of a rising function: its value at 0, its limits where it has some, else its values at the ends."""
+    """The span of a rising function: its values at the ends, its limits at infinity."""
     if kind == "sqrt" and (inner.low is None or player.value_of(inner.low, {}) < 0):
         inner = inner._replace(low=player.ZERO, open_low=False)
-    ends, is_open = [], []
-    for k, limit in enumerate(RISING[kind]):
-        end = inner[k]
-        at_zero = end == player.ZERO and kind != "log"
-        value = None if end is None else (kind, end)
-        ends.append((player.ONE if kind == "exp" else player.ZERO) if at_zero else value if limit is None else limit)
-        is_open.append(inner[k + 2] if at_zero or limit is None else True)
-    return Span(*ends, *is_open)
+    sides = zip(RISING[kind], inner[:2], inner[2:], strict=True)
+    (low, open_low), (high, open_high) = (raise_end(kind, limit, *side) for limit, *side in sides)
+    return Span(low, high, open_low, open_high)
 
 
-def fold_at_zero(inner: Span, function: Any) -> Span | None:
+def raise_end(kind: str, limit: Term | None, end: Any, is_open: Any) -> tuple[Term | None, bool]:
+    """One end, and whether it is left out; the limit where the value hardly differs from it."""
+    if end is None:
+        return limit, limit is not None
+    if end == player.ZERO and kind != "log":
+        return player.ONE if kind == "exp" else player.ZERO, is_open
+    value = (kind, end)
+    is_far = limit is not None and player.value_of(player.subtract(value, limit), {}).contains(0)
+    return (limit, True) if is_far else (value, is_open)
+
+
+def fold_at_zero(inner: Span, function: Callable[[Term], Term]) -> Span | None:
     """The span of a function that falls below 0 and rises above it."""
-    low, high = (None if end is None else player.value_of(end, {}) for end in inner[:2])
+    low, high = (None if end is None else player.value_of(end, {}) for end in (inner.low, inner.high))
     if low is not None and low >= 0:
-        return Span(*(None if end is None else fold(function(end)) for end in inner[:2]), *inner[2:])
+        return inner.raise_by(function)
     if high is not None and high <= 0:
-        return fold_at_zero(inner.turn(), function)
-    least = fold(function(player.ZERO))
-    least = player.ONE if least == ("cosh", player.ZERO) else player.ZERO
+        return inner.turn().raise_by(function)
+    least = player.ONE if function(player.ZERO)[0] == "cosh" else player.ZERO
     if low is None or high is None:
         return Span(least, None)
-    sizes = (-low, high)
-    if not (sizes[0] >= sizes[1] or sizes[1] >= sizes[0]):
-        return None
-    k = 0 if sizes[0] >= sizes[1] else 1
-    end = inner[k] if k else player.negate(inner[0])
-    return Span(least, fold(function(fold(end))), False, inner[k + 2] and not sizes[0] == sizes[1])
+    wider = inner if high > -low else inner.turn() if -low > high else None
+    return wider and Span(least, wider.raise_by(function).high, False, wider.open_high)

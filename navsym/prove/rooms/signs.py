@@ -213,7 +213,10 @@ def by_sum(goal: Any, sample: list[arb]) -> Iterator[Proof]:
 
 
 def separate(terms: list[Term]) -> Iterator[Proof]:
-    """The terms of each symbol for themselves, where no two have one in common; what remains above 0 is strict."""
+    """The terms of each symbol for themselves, where no two have one in common; what remains above 0 is strict.
+
+    A number below 0 is shared out so that each part is 0 where its symbols are.
+    """
     groups: list[list[Term]] = []
     for term in terms:
         names = player.symbols_of(term)
@@ -222,7 +225,13 @@ def separate(terms: list[Term]) -> Iterator[Proof]:
     moving = [g for g in groups if player.symbols_of(join(g))]
     numbers = [t for g in groups if g not in moving for t in g]
     if len(moving) > 1:
-        whole = ("+", *(("*", player.ONE, join(g)) for g in moving), join(numbers or [player.ZERO]))
+        rest = join(numbers or [player.ZERO])
+        if player.value_of(rest, {}) < 0:
+            at_zero = {name: player.ZERO for name in player.symbols_of(join(terms))}
+            values = [player.substitute(join(g), at_zero) for g in moving]
+            moving = [[*g, player.negate(v)] for g, v in zip(moving, values, strict=True)]
+            rest = ("+", rest, *values)
+        whole = ("+", *(("*", player.ONE, part) for part in (*map(join, moving), rest)))
         proof: Proof = {"rule": "sum", "proofs": Holes(), "strict": len(moving)}
         yield {"rule": "equal", "to": write_term(whole), "defined": Holes(), "proof": proof}
 
