@@ -8,6 +8,7 @@ from dataclasses import replace
 from functools import partial
 from typing import TYPE_CHECKING, Any
 
+import navsym as nav
 from navsym.cli import audit as audit_verb
 from navsym.cli import prove as prove_verb
 from navsym.cli.diff import read_ranges
@@ -66,8 +67,6 @@ def register_magics(shell: Any) -> None:
 
 def prove_line(line: str) -> Verdict:
     """The verdict of a formula with its ranges; raises NavsymError for what is none."""
-    import navsym as nav
-
     formula, *texts = RANGE.split(line.strip())
     if option := OPTION.search(formula):
         got = quote(option[1])
@@ -77,8 +76,6 @@ def prove_line(line: str) -> Verdict:
 
 def audit_line(line: str) -> Audit:
     """The verdicts on a specification, or the formulas of a function; raises NavsymError for what is neither."""
-    import navsym as nav
-
     file, *names = FUNCTION.split(line.strip())
     if len(names) > 1:
         raise ExpressionSyntaxError(f"expected one function; got {len(names)}; ask for one at a time", where="%audit")

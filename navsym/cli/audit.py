@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import navsym as nav
 from navsym.cli.output import emit, table, write_text
 
 if TYPE_CHECKING:
@@ -26,8 +27,6 @@ def command(
 
     Formulas only: navsym audit examples/audit/yaw_jacobian.c --function predict
     """
-    import navsym as nav
-
     answer = nav.audit(file, function=function)
     if html is not None:
         from navsym.report.audit_page import audit_page

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+import navsym as nav
 from navsym.cli.output import emit
 
 if TYPE_CHECKING:
@@ -15,8 +16,6 @@ def command(search: str = "", *, json_: bool = False) -> int:
 
     Example: navsym book "a/sqrt(1 - e**2*sin(x)**2)"
     """
-    import navsym as nav
-
     entries = nav.book.search(search)
     shown = {"entries": [entry.record() for entry in entries]}
     emit(shown, as_json=json_, text=lambda: as_text(entries))

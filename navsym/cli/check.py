@@ -7,6 +7,7 @@ from itertools import groupby
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import navsym as nav
 from navsym.cli._progress import Progress
 from navsym.cli.output import emit, table
 
@@ -22,8 +23,6 @@ def command(paths: list[Path], *, kernel: str | None = None, out: Path | None = 
 
     Example: navsym check report/certificates
     """
-    import navsym as nav
-
     try:
         with Progress("parts", resume="those checked follow; name the other paths for the rest") as bar:
             checks = nav.check(*paths, kernel=kernel, out=out, progress=bar.follow)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import navsym as nav
 from navsym.cli.output import emit
 
 
@@ -10,7 +11,5 @@ def command(claim: str, *, fresh: bool = False, json_: bool = False) -> None:
 
     Example: navsym cite "guaranteed_velocity:4.3.u2*" >> references.bib
     """
-    import navsym as nav
-
     cited = nav.cite(claim, fresh=fresh)
     emit(cited.document(), as_json=json_, text=cited.bibtex)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+import navsym as nav
 from navsym.cli._options import called_options
 from navsym.cli._progress import Progress
 from navsym.cli.output import emit, remark, table
@@ -17,8 +18,6 @@ def command(*, n: int, tau: str = "0.2", rho: str = "1/6371000", digits: int = 3
 
     Example: navsym condition --n 20 --tau 0.2 --rho 1/6371000
     """
-    import navsym as nav
-
     resume = "nothing is kept: a smaller --n or fewer --digits take less time"
     with called_options("condition"), Progress("matrices", 4, resume) as bar:
         found = nav.condition(n, tau, rho, digits, progress=bar.step)

@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+import navsym as nav
 from navsym.cli._progress import Progress
 from navsym.cli._settings import values_of
 from navsym.cli.derive import aligned
@@ -26,8 +27,6 @@ def command(
 
     Example: navsym conventions examples/conventions.toml
     """
-    import navsym as nav
-
     answer = nav.conventions(file, card=card)
     changes = {} if convert is None else values_of(convert, "--convert", "FIELD=WORD", "--convert attitude_error=body")
     with Progress("steps") as bar:

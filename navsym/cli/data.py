@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+import navsym as nav
 from navsym.cli.output import emit, table
 from navsym.core.errors import EmptyError, ExpressionSyntaxError
 
@@ -16,8 +17,6 @@ def command(action: str = "list", names: list[str] | None = None, *, json_: bool
 
     Example: navsym data get srtm        (NAVSYM_DATA names a folder that already has them)
     """
-    import navsym as nav
-
     if action not in ("list", "get"):
         raise ExpressionSyntaxError(f"expected list or get; got {action[:40]}; write one of them", where="data")
     if action == "get" and not names:

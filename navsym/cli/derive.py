@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+import navsym as nav
 from navsym.cli._settings import values_of
 from navsym.cli.output import dumps, emit, write_text
 from navsym.core.errors import DomainError
@@ -23,8 +24,6 @@ def command(
 
     Example: navsym derive examples/schuler-velocity.toml
     """
-    import navsym as nav
-
     derivation = nav.derive(file, values=values_of(set_))
     if certificate is not None:
         proofs = derivation.certificates()

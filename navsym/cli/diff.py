@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from typing import Any
 
+import navsym as nav
 from navsym.cli._settings import values_of
 from navsym.cli.output import emit, table
 from navsym.core.errors import ExpressionSyntaxError
@@ -17,8 +18,6 @@ def command(old: str, new: str, *, box: list[str] | None = None, json_: bool = F
 
     Example: navsym diff build/old build/new
     """
-    import navsym as nav
-
     found = nav.diff(old, new, box=read_ranges(box))
     emit(found.document(), as_json=json_, text=lambda: table(*found.table()))
     return 0 if found.equal else 1

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+import navsym as nav
 from navsym.cli.output import emit, table
 
 if TYPE_CHECKING:
@@ -15,8 +16,6 @@ def command(*, json_: bool = False) -> int:
 
     Example: navsym doctor
     """
-    import navsym as nav
-
     machine = nav.doctor()
     emit(machine.document(), as_json=json_, text=lambda: as_text(machine))
     return 0 if machine.complete else 3

@@ -5,6 +5,7 @@ from __future__ import annotations
 import textwrap
 from typing import TYPE_CHECKING
 
+import navsym as nav
 from navsym.cli.output import emit
 
 if TYPE_CHECKING:
@@ -19,8 +20,6 @@ def command(claim: str, *, seconds: float = 90.0, json_: bool = False) -> int:
 
     Example: navsym explain guaranteed_velocity:4.3.u2
     """
-    import navsym as nav
-
     told = nav.explain(claim, seconds=seconds)
     emit(told.document(), as_json=json_, text=lambda: as_text(told))
     return 0 if told.record.is_expected else 1

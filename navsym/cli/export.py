@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import navsym as nav
 from navsym.cli._options import called_options
 from navsym.cli._progress import Progress
 from navsym.cli._settings import values_of
@@ -34,8 +35,6 @@ def command(
 
     Example: navsym export guaranteed_velocity:4.13.y3 --to c,python --out build/drift
     """
-    import navsym as nav
-
     units = values_of(unit, "--unit", "NAME=UNIT in ASCII", "--unit T=s")
     words = ["navsym", "export", *claims, "--to", to, "--real", real, "--license", license_, "--vectors", str(vectors)]
     words += ["--allow-confirmed"] if allow_confirmed else []

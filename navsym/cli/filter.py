@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import navsym as nav
 from navsym.cli.output import emit, remark
 
 if TYPE_CHECKING:
@@ -24,8 +25,6 @@ def command(
 
     Example: navsym filter examples/switching.json --method k-pulsating --depth 2
     """
-    import navsym as nav
-
     found = nav.filter(file, method=method, depth=depth, missing=missing, form=form)
     for sentence in found.remarks:
         remark(sentence)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import navsym as nav
 from navsym.cli._settings import values_of
 from navsym.cli.output import emit, put, write_text
 
@@ -24,8 +25,6 @@ def command(
 
     Example: navsym formulate examples/schuler-velocity.toml --target drift --set T=1 --to mps --out drift.mps
     """
-    import navsym as nav
-
     answer = nav.formulate(file, target, to=to, kind=kind, grid=grid, mixture=mixture, values=values_of(set_))
     if out is not None:
         write_text(out, answer.text)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import navsym as nav
 from navsym.cli.output import emit
 
 if TYPE_CHECKING:
@@ -16,8 +17,6 @@ def command(folder: Path = Path("."), *, examples: bool = False, json_: bool = F
 
     Example: navsym init drive
     """
-    import navsym as nav
-
     workspace = nav.init(folder, examples=examples)
     said = f"{workspace.root}; the documentation says what to try" if examples else ""
     emit(workspace.document(), as_json=json_, text=lambda: said or as_text(workspace, folder))

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import TYPE_CHECKING
 
+import navsym as nav
 from navsym.cli._options import called_options
 from navsym.cli.output import emit, table
 
@@ -25,8 +26,6 @@ def command(
 
     Example: navsym limits --noise 5 --acceleration 0.5 --step 1
     """
-    import navsym as nav
-
     with called_options("limits"):
         found = nav.limits(noise, acceleration=acceleration, jerk=jerk, step=step, memory=memory)
     emit(found.document(), as_json=json_, text=lambda: as_text(found))

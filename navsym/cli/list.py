@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+import navsym as nav
 from navsym.cli.output import emit, remark, table
 
 if TYPE_CHECKING:
@@ -24,8 +25,6 @@ def command(
 
     Example: navsym list --status REFUTED --slip paper
     """
-    import navsym as nav
-
     listing = nav.claims(*(paper or []), status=status or (), slip=slip, words=words or "")
     for name in listing.changed:
         remark(f"the text of {name} has changed since its verdicts were written: navsym verify {name} --write")

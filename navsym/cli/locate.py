@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import navsym as nav
 from navsym.cli._options import called_options
 from navsym.cli.output import emit, remark, table
 
@@ -21,8 +22,6 @@ def command(
 
     Example: navsym locate examples/flight.json --method sequential
     """
-    import navsym as nav
-
     with called_options("locate"):
         found = nav.locate(config, method, maps=maps, offset_free=offset_free)
     for line in found.remarks:

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+import navsym as nav
 from navsym.cli._settings import values_of
 from navsym.cli.diff import read_ranges
 from navsym.cli.output import emit
@@ -37,8 +38,6 @@ def command(
 
     Example: navsym new-claim schuler_pendulum 2 --formula "sin(a) <= a" --range a=0,pi
     """
-    import navsym as nav
-
     claim = nav.new_claim(
         module,
         number,

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import navsym as nav
 from navsym.cli.output import emit
 
 
@@ -23,8 +24,6 @@ def command(
 
     Example: navsym new-paper schuler_pendulum --author "A. Author" --year 1923 --equations "1-6"
     """
-    import navsym as nav
-
     paper = nav.new_paper(
         name,
         title=title,

@@ -6,6 +6,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+import navsym as nav
 from navsym.cli._settings import values_of
 from navsym.cli.output import emit, table, write_text
 from navsym.core.errors import NavsymError
@@ -38,7 +39,6 @@ def command(
 
     How well a flight shows the states: navsym observe model.toml --accuracy --demand "bias = 1/100"
     """
-    import navsym as nav
     from navsym.observability.null_space import read_jacobians
 
     form, twice = "NAME = formula of the states", "expected one formula of {}; got two; rename one"

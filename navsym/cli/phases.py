@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+import navsym as nav
 from navsym.cli._progress import Progress
 from navsym.cli._settings import values_of
 from navsym.cli.output import dumps, emit, table, write_text
@@ -30,8 +31,6 @@ def command(
 
     Example: navsym phases examples/schuler-velocity.toml --target drift --range "0, 2*pi"
     """
-    import navsym as nav
-
     values: dict[str, Any] = dict(values_of(set_))
     names = [name.strip() for name in parameter.split(",")]
     ranges = {} if range_ is None else ranges_of(names, range_)

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import navsym as nav
 from navsym.cli._progress import Progress
 from navsym.cli.output import emit, table
 
@@ -17,8 +18,6 @@ def command(file: Path, *, jobs: int = 1, seconds: float = 20.0, json_: bool = F
 
     Example: navsym prove examples/formulas.toml
     """
-    import navsym as nav
-
     found: list[Verdict] = []
     try:
         with Progress("formulas", resume="those decided follow; run it again for the rest") as bar:

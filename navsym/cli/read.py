@@ -6,6 +6,7 @@ import sys
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import navsym as nav
 from navsym.cli.output import emit, remark, write_text
 
 if TYPE_CHECKING:
@@ -25,8 +26,6 @@ def command(
 
     Example: navsym read examples/double-angle.md --symbols examples/double-angle.toml
     """
-    import navsym as nav
-
     reading = nav.read(
         sys.stdin.buffer.read(4_000_001).decode("utf-8", "replace") if file == "-" else Path(file), symbols=symbols
     )

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+import navsym as nav
 from navsym.cli._progress import Progress
 from navsym.cli.output import emit, remark
 from navsym.cli.verify import unexpected_lines
@@ -23,8 +24,6 @@ def command(
 
     Example: navsym report alpha_beta_filter --out report
     """
-    import navsym as nav
-
     resume = "verdicts and finished pages are kept, their index is not; the same command goes on from there"
     with Progress("claims", resume=resume) as bar:
         site = nav.report(

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+import navsym as nav
 from navsym.cli.output import emit
 from navsym.core.errors import printable
 
@@ -16,8 +17,6 @@ def command(claim: str, *, seconds: float = 90.0, json_: bool = False) -> int:
 
     Example: navsym show guaranteed_velocity:4.3.u2
     """
-    import navsym as nav
-
     records = nav.show(claim, seconds=seconds)
     entries = [record.to_json() for record in records]
     document = entries[0] if len(entries) == 1 else {"claims": entries}

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Container
 from pathlib import Path
 
+import navsym as nav
 from navsym.cli._options import called_options
 from navsym.cli._progress import Progress
 from navsym.cli.output import emit, table
@@ -23,7 +24,6 @@ def command(
 
     Example: navsym simulate multistructure --runs 200 --seed 1
     """
-    import navsym as nav
     from navsym.studies.experiments import options_of
 
     with called_options("simulate"), Progress("runs", resume=resume(journal, options_of(name))) as bar:

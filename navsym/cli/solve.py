@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import Any
 
+import navsym as nav
 from navsym.cli._progress import Progress
 from navsym.cli._settings import values_of
 from navsym.cli.output import dumps, emit, table, write_text
@@ -28,8 +29,6 @@ def command(
 
     Example: navsym solve examples/schuler-velocity.toml --target drift --set T=pi/2
     """
-    import navsym as nav
-
     found: Any = nav.design if design else nav.solve
     estimator = found(file, target, digits=digits, values=values_of(set_))
     document = estimator.document()

@@ -6,6 +6,7 @@ import os
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import navsym as nav
 from navsym.cli._options import called_options
 from navsym.cli._progress import Progress
 from navsym.cli.output import emit
@@ -31,8 +32,6 @@ def command(
 
     Example: navsym sweep examples/study.json --workers 2
     """
-    import navsym as nav
-
     resume = "finished shards are kept: the same command (without --fresh) goes on from there"
     with called_options("sweep"), Progress("jobs", resume=resume) as bar:
         found = nav.sweep(

@@ -5,6 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 from typing import TYPE_CHECKING
 
+import navsym as nav
 from navsym.cli._options import called_options
 from navsym.cli._progress import Progress
 from navsym.cli.output import emit, remark, table
@@ -32,8 +33,6 @@ def command(
 
     Example: navsym track examples/drive.csv --order 3 --sigma 0.5
     """
-    import navsym as nav
-
     with called_options("track"), Progress("steps") as bar:
         found = nav.track(
             file,

@@ -8,6 +8,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+import navsym as nav
 from navsym.cli._progress import Progress
 from navsym.cli.output import emit, remark, table
 from navsym.core.errors import NavsymError
@@ -38,7 +39,6 @@ def command(
 
     Example: navsym verify guaranteed_velocity
     """
-    import navsym as nav
     from navsym.claims.workspace import FILE, find_workspace
     from navsym.verification.ledger import ledger_file
 

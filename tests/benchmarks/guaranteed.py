@@ -23,10 +23,11 @@ from navsym.guaranteed.certificate.basis import cached_basis, make_basis
 from navsym.guaranteed.certificate.enclosure import Panel, PanelProblem
 from navsym.guaranteed.certificate.fixed import certify
 from navsym.guaranteed.phases.family import Family, U
-from navsym.guaranteed.search.alternance import find_alternance, lagrangian, local_maxima
+from navsym.guaranteed.search.alternance import find_alternance, local_maxima
 from navsym.guaranteed.search.exchange import find_contacts
 from navsym.guaranteed.search.kernels import contact_system, grid_values
 from tests.benchmarks.lengths import follow_lengths, values_for_lengths
+from tests.benchmarks.twofold import lagrangian, sharp_panels
 
 t = sp.Symbol("t", real=True)
 
@@ -99,8 +100,7 @@ def by_highspy(H, P):
 
 
 def alone(case):
-    basis = make_basis(case)
-    return find_contacts(basis.sharp).value * basis.scale
+    return prepared(case)()
 
 
 def anew(case):
@@ -122,7 +122,8 @@ def certified_cold(case):
 def prepared(case):
     """The search only, with basis and grid made before, as the peers get their matrix."""
     basis = make_basis(case)
-    return lambda: find_contacts(basis.sharp).value * basis.scale
+    sharp = sharp_panels(basis, case)
+    return lambda: sharp.value(find_contacts(sharp.panels)) * basis.scale
 
 
 def timed(function, repeats):

@@ -21,6 +21,7 @@ from navsym.guaranteed.phases.family import Family
 from navsym.guaranteed.phases.patterns import order_contacts
 from navsym.guaranteed.search.exchange import find_contacts
 from navsym.guaranteed.search.kernels import Array, Ints, chebyshev_derivative, chebyshev_rows, chebyshev_sum
+from tests.benchmarks.twofold import sharp_panels
 
 #: The search basis of a length serves lengths down to this part of it.
 REACH = 0.25
@@ -49,18 +50,20 @@ def values_for_lengths(family: Family, lengths: Sequence[float]) -> Array:
 def fill_values(family: Family, T: Array, block: Ints, values: Array) -> int:
     """Values for the first lengths of a descending block; how many were done, at least one."""
     top = Fraction(float(T[block[0]]))
-    basis = make_basis(family.exact(to_rational(top)))
-    contacts = order_contacts(find_contacts(basis.sharp))
-    values[block[0]] = contacts.value * basis.scale
-    alternates = basis.sharp.coefficients.shape[0] == 1 and contacts.u.size == basis.sharp.functional.size
+    problem = family.exact(to_rational(top))
+    basis = make_basis(problem)
+    sharp = sharp_panels(basis, problem)
+    C, p = sharp.panels.coefficients, sharp.panels.functional
+    contacts = order_contacts(find_contacts(sharp.panels))
+    values[block[0]] = sharp.value(contacts) * basis.scale
+    alternates = C.shape[0] == 1 and contacts.u.size == p.size
     if block.size == 1 or not alternates:
         return 1
     ends = 2.0 * T[block[1:]] / float(top) - 1.0
     kind = np.where(contacts.inner == 1, 1, np.where(contacts.u < 0, 0, 2)).astype(np.int64)
-    C = basis.sharp.coefficients[0]
-    C1 = chebyshev_derivative(C)
+    C1 = chebyshev_derivative(C[0])
     C2 = chebyshev_derivative(C1)
-    rest = follow_lengths(C, C1, C2, basis.sharp.functional, ends, contacts.u, kind, contacts.sign)
+    rest = follow_lengths(C[0], C1, C2, p, ends, contacts.u, kind, contacts.sign)
     count = rest.size if np.isfinite(rest).all() else int(np.isfinite(rest).argmin())
     values[block[1 : count + 1]] = rest[:count] * basis.scale
     return 1 + count

@@ -15,7 +15,7 @@ from navsym.core.loops import compile_loop
 from navsym.guaranteed.certificate.basis import make_basis
 from navsym.guaranteed.certificate.enclosure import Panel, PanelProblem
 from navsym.guaranteed.search import kernels
-from navsym.guaranteed.search.alternance import chebyshev_values, local_maxima, two_product, two_sum
+from navsym.guaranteed.search.alternance import chebyshev_values, local_maxima
 from navsym.guaranteed.search.exchange import (
     Panels,
     chebyshev_nodes,
@@ -25,6 +25,7 @@ from navsym.guaranteed.search.exchange import (
     find_contacts,
     regressor_rows,
 )
+from tests.benchmarks.twofold import exact_panels, sharp_panels, two_product, two_sum
 
 
 def power_panels(m, functional):
@@ -36,8 +37,9 @@ def power_panels(m, functional):
 def test_the_leading_chebyshev_coefficient_is_bounded_by_the_alternance(m):
     functional = np.zeros(m)
     functional[-1] = 1.0
-    found = find_contacts(power_panels(m, functional))
-    assert found.value == pytest.approx(1.0, rel=1e-12)
+    panels = power_panels(m, functional)
+    found = find_contacts(panels)
+    assert exact_panels(panels).value(found) == pytest.approx(1.0, rel=1e-12)
     assert np.allclose(np.sort(found.u), -np.cos(np.pi * np.arange(m) / (m - 1)), atol=1e-9)
     assert found.excess < 1e-12
 
@@ -104,8 +106,9 @@ def test_dependent_contacts_are_reduced_without_changing_the_sum_or_the_cost():
 def test_a_functional_with_fewer_contacts_than_unknowns_is_solved():
     m = 4
     ends = regressor_rows(np.eye(m)[None], np.array([0]), np.array([1.0]))[0]
-    found = find_contacts(power_panels(m, ends))
-    assert found.value == pytest.approx(1.0, rel=1e-10)
+    panels = power_panels(m, ends)
+    found = find_contacts(panels)
+    assert exact_panels(panels).value(found) == pytest.approx(1.0, rel=1e-10)
     assert found.u.size == 1 and found.u[0] == 1.0
 
 
@@ -113,9 +116,11 @@ def test_a_functional_with_fewer_contacts_than_unknowns_is_solved():
 def test_the_value_in_twofold_precision_is_that_of_the_chebyshev_polynomial_to_the_last_bits(k):
     t = sp.Symbol("t", real=True)
     panel = Panel(0, tuple(t**j for j in range(8)), t, sp.Integer(0), sp.Integer(1), sp.Integer(1))
-    basis = make_basis(PanelProblem((panel,), tuple(sp.Integer(int(j == k)) for j in range(8))))
+    problem = PanelProblem((panel,), tuple(sp.Integer(int(j == k)) for j in range(8)))
+    basis = make_basis(problem)
+    sharp = sharp_panels(basis, problem)
     shifted = sp.Poly(sp.chebyshevt(7, 2 * t - 1), t).coeff_monomial(t**k)
-    assert find_contacts(basis.sharp).value * basis.scale == pytest.approx(abs(int(shifted)), rel=1e-15)
+    assert sharp.value(find_contacts(sharp.panels)) * basis.scale == pytest.approx(abs(int(shifted)), rel=1e-15)
 
 
 def test_products_and_sums_of_two_doubles_lose_nothing():

@@ -7,9 +7,9 @@ that needs; the orthonormal functions are then safe in double precision.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass, field
-from functools import cached_property, lru_cache, partial
+from functools import lru_cache
 from itertools import chain
 from typing import Any
 
@@ -23,26 +23,14 @@ from navsym.core.exact import to_fmpq
 from navsym.guaranteed.certificate.enclosure import Panel, PanelProblem
 from navsym.guaranteed.search.exchange import Panels
 
-# Chebyshev coefficients from values at Chebyshev points: in doubles for a search, in balls for the last bits of it.
-
-
-#: Trailing coefficients below this part of the largest: the functions are resolved. Up to ``SHARP`` points a panel
-#: they can be computed in balls and resolved beyond the digits of a double.
-RESOLVED, SHARP_RESOLVED = 3e-13, 1e-19
-SHARP = 96
+#: Trailing coefficients below this part of the largest: the functions are resolved.
+RESOLVED = 3e-13
 NODE_BITS = 128
 
 
 def to_doubles(matrix: arb_mat) -> NDArray[np.float64]:
     """The midpoints as doubles."""
     return np.array(list(map(float, matrix.entries()))).reshape(matrix.nrows(), matrix.ncols())
-
-
-def to_twofold(matrix: arb_mat) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """The midpoints as doubles, and what these lack."""
-    high = to_doubles(matrix)
-    low = [float(e - h) for e, h in zip(matrix.entries(), high.ravel().tolist(), strict=True)]
-    return high, np.array(low).reshape(high.shape)
 
 
 def double_coefficients(q: arb_mat, panels: int, count: int) -> NDArray[np.float64]:
@@ -61,33 +49,15 @@ def double_cosines(count: int) -> NDArray[np.float64]:
     return cosines
 
 
-def twofold_coefficients(q: arb_mat, panels: int, count: int) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    """The same as doubles and what these lack."""
-    rows = q.tolist()
-    with precision(NODE_BITS):
-        parts = [to_twofold(ball_cosines(count) * arb_mat(rows[i * count : (i + 1) * count])) for i in range(panels)]
-    return np.stack([high for high, _ in parts]), np.stack([low for _, low in parts])
-
-
 def tail_share(high: NDArray[np.float64]) -> float:
     """The last coefficients as a part of the largest."""
     return float(np.abs(high[:, -3:, :]).max() / np.abs(high).max())
 
 
-@lru_cache(maxsize=8)
-def ball_cosines(count: int) -> arb_mat:
-    """``2/n cos(pi k (j + 1/2) / n)``, the first row halved."""
-    with precision(NODE_BITS):
-        cosines = [arb.cos_pi(arb(j) / (2 * count)) * 2 / count for j in range(4 * count)]
-        rows = [[cosines[k * (2 * j + 1) % (4 * count)] for j in range(count)] for k in range(count)]
-        rows[0] = [c / 2 for c in rows[0]]
-        return arb_mat(rows)
-
-
-def resolved_count(high: NDArray[np.float64], least: float = 1e-15) -> int:
-    """How many coefficients are above their rounding, or another part of the largest."""
+def resolved_count(high: NDArray[np.float64]) -> int:
+    """How many coefficients are above their rounding."""
     size = np.abs(high).max(axis=(0, 2))
-    return max(int(np.flatnonzero(size > least * size.max()).max()) + 1, 3)
+    return max(int(np.flatnonzero(size > 1e-15 * size.max()).max()) + 1, 3)
 
 
 #: Points a panel that are tried first; even numbers.
@@ -122,7 +92,6 @@ class Basis:
     size       : the exact number by which ``A P`` was divided for the search; any power of ten
     panels     : Chebyshev coefficients of q / sigma in double precision
     loss       : digits that cancel in ``x . H`` when x is written in the basis of the problem
-    sharpen    : makes the panels again with what the doubles lack
     """
 
     transform: arb_mat
@@ -131,12 +100,6 @@ class Basis:
     panels: Panels
     bits: int
     loss: int
-    sharpen: Callable[[], Panels]
-
-    @cached_property
-    def sharp(self) -> Panels:
-        """The panels with coefficients beyond doubles, for a value to the last bits; made at the first use."""
-        return self.sharpen()
 
     @property
     def scale(self) -> float:
@@ -290,22 +253,7 @@ def compute_basis(problem: PanelProblem, bits: int) -> Basis:
     with precision(bits):
         size = sum((p * p for p in P.entries()), arb(0)).sqrt().mid()
         search = Panels(high[:, : resolved_count(high)], to_doubles(P * (1 / size))[:, 0])
-    return Basis(A, P, size, search, bits, loss, partial(sharpen_panels, panels, A, P, size, search, count, bits))
-
-
-def sharpen_panels(
-    panels: Sequence[Panel], A: arb_mat, P: arb_mat, size: arb, rounded: Panels, count: int, bits: int
-) -> Panels:
-    """The panels of a basis with what the doubles lack; as they are where that would take too many points."""
-    while count <= SHARP:
-        with precision(bits):
-            high, low = twofold_coefficients(sample_panels(panels, count, bits) * A.transpose(), len(panels), count)
-            p_high, p_low = to_twofold(P * (1 / size))
-        if tail_share(high) < (SHARP_RESOLVED if 2 * count <= SHARP else RESOLVED):
-            used = resolved_count(high, SHARP_RESOLVED)
-            return Panels(high[:, :used], p_high[:, 0], low[:, :used], p_low[:, 0])
-        count *= 2
-    return rounded
+    return Basis(A, P, size, search, bits, loss)
 
 
 def first_count(problem: PanelProblem) -> int:

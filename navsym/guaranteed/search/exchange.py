@@ -17,7 +17,7 @@ import numpy as np
 
 from navsym.core.arrays import as_array
 from navsym.core.simplex import independent_rows, simplex
-from navsym.guaranteed.search.alternance import SAME, find_alternance, fine_count, lagrangian, local_maxima
+from navsym.guaranteed.search.alternance import SAME, find_alternance, fine_count, local_maxima
 from navsym.guaranteed.search.kernels import Array, Ints, contact_system, differentiation, grid_values
 
 NEAR = 1e-7  # |f| above 1 - NEAR counts as touching
@@ -44,28 +44,15 @@ class Panels:
 
     coefficients : (panels, K, m) Chebyshev coefficients in the local variable u in [-1, 1]
     functional   : (m,) p, in the same basis
-    coefficients_low, functional_low : what the doubles lack; zero when not given
     """
 
     coefficients: Array
     functional: Array
-    coefficients_low: Array | None = None
-    functional_low: Array | None = None
 
     def __post_init__(self) -> None:
         panels, K, m = np.shape(self.coefficients)
-        shape = (panels, K, m)
-        for name, wanted, why in (("coefficients", shape, "panels"), ("functional", (m,), "unknowns")):
-            low = f"{name}_low"
-            given = np.zeros(wanted) if getattr(self, low) is None else getattr(self, low)
+        for name, wanted, why in (("coefficients", (panels, K, m), "panels"), ("functional", (m,), "unknowns")):
             object.__setattr__(self, name, as_array(name, getattr(self, name), wanted, why))
-            object.__setattr__(self, low, as_array(low, given, wanted, why))
-
-    @property
-    def low(self) -> tuple[Array, Array]:
-        """The low parts of coefficients and functional."""
-        assert self.coefficients_low is not None and self.functional_low is not None
-        return self.coefficients_low, self.functional_low
 
     @cached_property
     def derivatives(self) -> tuple[Array, Array]:
@@ -94,7 +81,6 @@ class Contacts:
     dual     : (m,)
     excess   : largest ``|f| - 1`` seen on a fine grid
     touching : panel and u of every further place where ``|f|`` is near one, weight zero
-    value    : of the optimum, to the last bits where the functions are known beyond doubles
     """
 
     panel: Ints
@@ -105,7 +91,6 @@ class Contacts:
     dual: Array
     excess: float
     touching: tuple[tuple[int, float], ...] = ()
-    value: float = np.nan
 
 
 def search_nodes(panels: Panels) -> Array:
@@ -139,16 +124,16 @@ def contact_candidates(panels: Panels) -> Iterator[Contacts]:
 
 def regular_contacts(panels: Panels) -> Contacts | None:
     """Contacts of a full alternance, or None when there is none or the fast road does not find it."""
-    made, (C_low, p_low) = panels.search, panels.low
-    move, panel, u, weights, x, height, value, where, places = find_alternance(
-        panels.coefficients, C_low, panels.functional, p_low, made.nodes, made.grid, made.start, made.fine, 1.0 - NEAR
+    made = panels.search
+    move, panel, u, weights, x, height, where, places = find_alternance(
+        panels.coefficients, panels.functional, made.nodes, made.grid, made.start, made.fine, 1.0 - NEAR
     )
     sizes = np.abs(weights)
     if move == np.inf or height > 1.0 + 1e-9 or not sizes.min() > NEGLIGIBLE * sizes.sum():
         return None
     inner = (np.abs(u) < 1.0).astype(np.int64)
     touching = tuple(zip(where.tolist(), places.tolist(), strict=True))[:MOST_TOUCHES]
-    return Contacts(panel, u, inner, np.sign(weights), weights, x, height - 1.0, touching, value)
+    return Contacts(panel, u, inner, np.sign(weights), weights, x, height - 1.0, touching)
 
 
 def regressor_rows(coefficients: Array, panel: Ints, u: Array) -> Array:
@@ -299,9 +284,7 @@ def fit_contacts(panels: Panels, start: tuple[Ints, Array, Array, Array], x: Arr
     kept, weights = kept[heavy], weights[heavy]
     panel, u, inner, sign = panel[kept], u[kept], inner[kept], sign[kept]
     excess, touching = survey_dual(panels, x, panel, u)
-    (C_low, p_low), p = panels.low, panels.functional
-    value = lagrangian(C, C_low, p, p_low, panel, u, sign, weights, x)
-    found = Contacts(panel, u, inner, sign, weights, x, excess, touching, value)
+    found = Contacts(panel, u, inner, sign, weights, x, excess, touching)
     return replace(found, excess=max(excess, 1e-3)) if has_misfits(found) else found
 
 

@@ -36,16 +36,7 @@ from navsym.terrain.kernels.margins import (
     parts_about_the_mean,
     single_limit,
 )
-from navsym.terrain.kernels.stages import (
-    add_more,
-    evaluate,
-    keep,
-    lowest_per_velocity,
-    on_map,
-    scores,
-    settle,
-    shut_out,
-)
+from navsym.terrain.kernels.stages import add_more, evaluate, scores, settle
 
 #: Measurements summed for every hypothesis before the first comparison; a multiple of TOGETHER.
 FIRST = 32
@@ -53,6 +44,8 @@ FIRST = 32
 STAGES = (32, 64)
 #: The position search first looks at one measurement of so many.
 EVERY = 8
+#: The largest number in single precision.
+LARGEST = float(np.finfo(np.float32).max)
 #: Hypotheses on which the next measurements are chosen.
 PROBES = 32
 
@@ -143,9 +136,16 @@ def borders(
     if inside:
         return np.ones((Mvx, Mx), np.bool_), np.ones((Mvy, My), np.bool_)
     return (
-        on_map(bx, wx, float(steps[0]), Mx, Mvx, float(H.shape[1] - 1)),
-        on_map(by, wy, float(steps[1]), My, Mvy, float(H.shape[0] - 1)),
+        stays_within(bx, wx, steps[0], Mx, Mvx, H.shape[1] - 1),
+        stays_within(by, wy, steps[1], My, Mvy, H.shape[0] - 1),
     )
+
+
+def stays_within(b: Any, w: Any, s: float, M: int, Mv: int, last: int) -> NDArray[np.bool_]:
+    """(Mv, M): whether one coordinate of a hypothesis stays within 0…last at every measurement."""
+    shifts = (np.arange(M) - M // 2)[:, None] * s
+    places = (b + (shifts + (v - Mv // 2) * w) for v in range(Mv))
+    return np.array([((u >= 0.0) & (u <= last)).all(axis=1) for u in places])
 
 
 def admissible(
@@ -245,17 +245,20 @@ def first_look(
     if centred:
         # Four neighbours on the track err alike, and their mean would take it all: spread every four.
         chosen = np.sort(chosen).reshape(TOGETHER, -1).T.ravel()
-    sums = first_sums(case, pair, counts, centred, chosen)
+    sums = first_sums(case, pair, counts, centred, chosen)[..., : counts[0]]
     if not (across.all() and along.all()):
-        shut_out(sums, across, along)
-    found, value = lowest_per_velocity(sums, counts[0], counts[1])
-    _, second, tried = descend(case, pair, counts, centred, found[np.argsort(value)[:8]], allowed)
+        sums[~(across[:, None, None, :] & along[:, :, None])] = np.inf
+    flat = sums.reshape(len(across) * len(along), -1)
+    lowest = np.argsort(flat.min(axis=1))[:8]  # of each velocity
+    start = lowest * flat.shape[1] + flat[lowest].argmin(axis=1)
+    _, second, tried = descend(case, pair, counts, centred, start, allowed)
     ceiling = ceiling_of(second, n, bound, parts)
-    index, partial = np.empty(total, np.int64), np.empty(total, np.float32)
-    count = keep(sums, counts[0], counts[1], single_limit(ceiling, chosen.size, bound, first), index, partial)
-    low = floor_of(partial[:count], chosen.size, bound, first)
+    limit = min(single_limit(ceiling, chosen.size, bound, first), LARGEST)  # what leaves the map is infinite
+    single = np.float32(limit)
+    index = np.flatnonzero(flat <= (single if single <= limit else np.nextafter(single, np.float32(0.0))))
+    low = floor_of(flat.ravel()[index], chosen.size, bound, first)
     slack = double_limit(ceiling, n, bound, parts)
-    return Survivors(index[:count], low, second, slack, used, tried, total * chosen.size + tried * n)
+    return Survivors(index, low, second, slack, used, tried, total * chosen.size + tried * n)
 
 
 def second_look(

@@ -119,15 +119,15 @@ def criterion_one(case: Any, shift: Any, limit: float) -> float:
 
 
 @njit(**COMPILE)
-def criterion_masked(case: Any, shift: Any) -> float:
-    """:func:`criterion_one` for tracks that may leave the map or cross voids: infinity when they do."""
+def criterion_masked(case: Any, shift: Any, centred: bool, d: np.ndarray) -> float:
+    """Either criterion of a track that may leave the map or cross voids, infinity when it does; d (n,): work space."""
     total = 0.0
-    for k in range(case[3].shape[0]):
-        d = difference_or_nan(case, shift, k)
-        if np.isnan(d):
+    for k in range(d.shape[0]):
+        d[k] = difference_or_nan(case, shift, k)
+        if np.isnan(d[k]):
             return np.inf
-        total = add_square(total, d)
-    return total
+        total = add_square(total, d[k])
+    return about_the_mean(d, np.inf) if centred else total
 
 
 @njit(**COMPILE)
@@ -154,16 +154,6 @@ def offset_free_one(case: Any, shift: Any, limit: float, d: np.ndarray) -> float
 
 
 @njit(**COMPILE)
-def offset_free_masked(case: Any, shift: Any, d: np.ndarray) -> float:
-    """:func:`offset_free_one` for tracks that may leave the map or cross voids: infinity when they do."""
-    for k in range(d.shape[0]):
-        d[k] = difference_or_nan(case, shift, k)
-        if np.isnan(d[k]):
-            return np.inf
-    return about_the_mean(d, np.inf)
-
-
-@njit(**COMPILE)
 def dense_masked(case: Any, steps: Any, counts: Any, centred: bool, out: np.ndarray) -> None:
     """Criteria of all hypotheses, one at a time, infinite where the track leaves the map or crosses a void.
 
@@ -173,7 +163,7 @@ def dense_masked(case: Any, steps: Any, counts: Any, centred: bool, out: np.ndar
     d = np.empty(case[3].shape[0])
     for index in range(out.shape[0]):
         shift = shift_of(index, counts, steps)
-        out[index] = offset_free_masked(case, shift, d) if centred else criterion_masked(case, shift)
+        out[index] = criterion_masked(case, shift, centred, d)
 
 
 @njit(**COMPILE)
@@ -199,7 +189,7 @@ def velocity_criteria(case: Any, centre: np.ndarray, steps: Any, counts: Any, ce
             cx = centre[0, 0] * vx + centre[0, 1] * vy
             cy = centre[1, 0] * vx + centre[1, 1] * vy
             shift = (-cx, -cy, vx, vy)
-            out[Vi, Vj] = offset_free_masked(case, shift, d) if centred else criterion_masked(case, shift)
+            out[Vi, Vj] = criterion_masked(case, shift, centred, d)
 
 
 #: Rows of hypotheses are padded to this many entries, so that vector loops have no remainder.

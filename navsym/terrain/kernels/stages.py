@@ -46,67 +46,6 @@ def scores(case: Any, steps: Any, counts: Any, centred: bool, probes: np.ndarray
 
 
 @njit(**COMPILE)
-def on_map(b: np.ndarray, w: np.ndarray, s: float, M: int, Mv: int, last: float) -> np.ndarray:
-    """(Mv, M): whether one coordinate of a hypothesis stays within 0…last at every measurement."""
-    out = np.empty((Mv, M), np.bool_)
-    for v in range(Mv):
-        for i in range(M):
-            shift, rate, inside = (i - M // 2) * s, 1.0 * (v - Mv // 2), True
-            for k in range(b.shape[0]):
-                u = b[k] + (shift + rate * w[k])
-                if not 0.0 <= u <= last:
-                    inside = False
-                    break
-            out[v, i] = inside
-    return out
-
-
-@njit(**COMPILE)
-def shut_out(sums: np.ndarray, across: np.ndarray, along: np.ndarray) -> None:
-    """Infinite sums for hypotheses that leave the map. sums : (Mvx, Mvy, My, W), across (Mvx, Mx), along (Mvy, My)."""
-    for Vi in range(sums.shape[0]):
-        for Vj in range(sums.shape[1]):
-            for j in range(sums.shape[2]):
-                for i in range(across.shape[1]):
-                    if not (across[Vi, i] and along[Vj, j]):
-                        sums[Vi, Vj, j, i] = np.inf
-
-
-@njit(**COMPILE)
-def lowest_per_velocity(sums: np.ndarray, Mx: int, My: int) -> tuple[np.ndarray, np.ndarray]:
-    """Flat index of the smallest partial sum of each (Vi, Vj). sums : (Mvx, Mvy, My, W)."""
-    Mvx, Mvy = sums.shape[:2]
-    found = np.empty(Mvx * Mvy, np.int64)
-    value = np.empty(Mvx * Mvy, np.float32)
-    for v in range(Mvx * Mvy):
-        best, at = np.float32(np.inf), 0
-        for j in range(My):
-            for i in range(Mx):
-                s = sums[v // Mvy, v % Mvy, j, i]
-                if s < best:
-                    best, at = s, j * Mx + i
-        found[v] = v * My * Mx + at
-        value[v] = best
-    return found, value
-
-
-@njit(**COMPILE)
-def keep(sums: np.ndarray, Mx: int, My: int, limit: float, index: np.ndarray, value: np.ndarray) -> int:
-    """Write index and sum of every hypothesis not above ``limit``; returns how many."""
-    Mvx, Mvy = sums.shape[:2]
-    count = 0
-    for v in range(Mvx * Mvy):
-        for j in range(My):
-            for i in range(Mx):
-                s = sums[v // Mvy, v % Mvy, j, i]
-                if not (s > limit) and s < np.inf:
-                    index[count] = (v * My + j) * Mx + i
-                    value[count] = s
-                    count += 1
-    return count
-
-
-@njit(**COMPILE)
 def add_more(case: Any, steps: Any, counts: Any, centred: bool, index: Any, low: Any, limit: float) -> int:
     """Add the measurements of a case to the lower bounds of the survivors, in place; returns the samples used.
 
