@@ -22,6 +22,7 @@ from navsym.audit.names import Names, squeeze
 from navsym.audit.syntax import SIZE, read_decimal
 from navsym.audit.values import Array, Index, Scalar, places_of, relate_rotation
 from navsym.core.choice import one_of
+from navsym.core.units import read_unit as check_unit
 from navsym.core.errors import DomainError, DuplicateError, ExpressionSyntaxError, ShapeError, UnknownSymbolError
 from navsym.language.expression import read_tree
 from navsym.language.files import decode, name_file, read_bytes
@@ -294,13 +295,16 @@ def read_symbols(table: Table, names: Names, where: str) -> tuple[dict[str, Inde
     shapes, symmetric = {}, set()
     for spelling, declaration in table.items():
         place = join_place(where, spelling)
+        if isinstance(declaration, dict) and "unit" in declaration:
+            names.units[squeeze(spelling)] = unit = as_text(declaration["unit"], join_place(place, "unit"), "a unit")
+            check_unit(unit, join_place(place, "unit"))
         sizes = declaration.get("matrix", declaration.get("vector")) if isinstance(declaration, dict) else None
         if sizes is None:
             if isinstance(declaration, dict):
-                expect_keys(declaration, ("name", "range", "sign"), place)
+                expect_keys(declaration, ("name", "range", "sign", "unit"), place)
             names.declare(spelling, declaration, place)
             continue
-        expect_keys(declaration, ("matrix", "vector", "symmetric", "start", "rotation"), place)
+        expect_keys(declaration, ("matrix", "vector", "symmetric", "start", "rotation", "unit"), place)
         given = sizes if isinstance(sizes, list) else [sizes]
         if not all(isinstance(n, int) and not isinstance(n, bool) and 0 < n <= LARGEST_SIDE for n in given):
             message = f"expected sizes from 1 to {LARGEST_SIDE}, such as [3, 3]; got {quote(sizes)}; correct them"
