@@ -29,7 +29,7 @@ from navsym.models.modelfile import BasisFile, ModelFile, linear_model, model_fr
 #: Keys of a model file -> the arguments that write them, for the place of an error.
 PLACES = (
     (r"^Model: (model|basis|parameters)\.", "Model: "),
-    (r"^Model: measurement\[(\d+)\]\.h", r"Model: H[\1]"),
+    (r"^Model: measurement\[(\d+)\]\.[hz]", r"Model: H[\1]"),
     (r"^Model: measurement\[(\d+)\]\.sigma", r"Model: sigma[\1]"),
     (r"^Model: measurement\[(\d+)\]\.name", r"Model: measurements[\1]"),
     (r"^Model: measurement$", "Model: measurements"),
