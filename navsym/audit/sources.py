@@ -22,8 +22,8 @@ from navsym.audit.names import Names, squeeze
 from navsym.audit.syntax import SIZE, read_decimal
 from navsym.audit.values import Array, Index, Scalar, places_of, relate_rotation
 from navsym.core.choice import one_of
-from navsym.core.units import read_unit as check_unit
 from navsym.core.errors import DomainError, DuplicateError, ExpressionSyntaxError, ShapeError, UnknownSymbolError
+from navsym.core.units import read_unit as check_unit
 from navsym.language.expression import read_tree
 from navsym.language.files import decode, name_file, read_bytes
 from navsym.language.names import expect_keys, join_place, quote, suggest_nearest

@@ -16,6 +16,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
 from itertools import chain, permutations
+from math import prod
 from typing import Any
 
 from navsym.core.errors import DomainError
@@ -23,7 +24,19 @@ from navsym.core.units import Powers, combine, print_unit, read_unit
 from navsym.language.names import FUNCTIONS
 from navsym.language.printer import TIGHT, WHOLE, Text, Writer
 from navsym.language.shapes import Shape
-from navsym.language.tree import NUMBER, POWER, PRODUCT, SUM, SYMBOL, ZERO, Tree, build, list_names, list_parts, parts_of
+from navsym.language.tree import (
+    NUMBER,
+    POWER,
+    PRODUCT,
+    SUM,
+    SYMBOL,
+    ZERO,
+    Tree,
+    build,
+    list_names,
+    list_parts,
+    parts_of,
+)
 from navsym.language.vectors import BINDERS, INFINITE, RELATIONS
 
 #: The unit of a part: ("unit", base) and ("name", symbol) -> exponent. None is zero, which has every unit.
@@ -252,8 +265,8 @@ class Inference:
 
     def power(self, part: Tree, base: Cell, exponent: Cell) -> Cell:
         """A power: with an exponent that is no number the base has no unit, unless the exponent is a whole number."""
-        if part.args[1].head == NUMBER:
-            return None if base is None else scale(base, part.args[1].args[0])
+        if (number := evaluate(part.args[1])) is not None:
+            return None if base is None else scale(base, number)
         self.plain(exponent, part.args[1], "an exponent")
         if all(map(self.is_whole, list_names(part.args[1]))):
             self.numbers += 1
@@ -443,6 +456,18 @@ def multiply(*cells: Cell) -> Cell:
 def scale(form: Form, exponent: Fraction) -> Form:
     """A power of a unit."""
     return combine([(form, exponent)])  # type: ignore[list-item,return-value]
+
+
+def evaluate(tree: Tree) -> Fraction | None:
+    """A number that is written as products, quotients and sums, as an exponent may be."""
+    if tree.head == NUMBER:
+        return tree.args[0]  # type: ignore[no-any-return]
+    numbers = [evaluate(part) for part in tree.args] if tree.head in (SUM, PRODUCT, POWER) else [None]
+    if any(x is None for x in numbers):
+        return None
+    if tree.head == POWER:
+        return 1 / numbers[0] if numbers[1] == -1 and numbers[0] else None
+    return sum(numbers) if tree.head == SUM else prod(numbers)  # type: ignore[arg-type,return-value]
 
 
 def is_integer(shape: Shape) -> bool:

@@ -15,7 +15,18 @@ from navsym.language.frames import infer_frames
 from navsym.language.names import join_place, quote, suggest_nearest
 from navsym.language.schema import Table, as_table
 from navsym.language.shapes import Shape, read_shape
-from navsym.language.tree import ONE, SYMBOL, Tree, build, build_inverse, build_product, build_symbol, list_names
+from navsym.language.tree import (
+    MINUS_ONE,
+    ONE,
+    PRODUCT,
+    SYMBOL,
+    Tree,
+    build,
+    build_inverse,
+    build_product,
+    build_symbol,
+    list_names,
+)
 from navsym.language.vectors import read_value
 from navsym.models.blocks import STATE
 
@@ -66,6 +77,13 @@ def require_meaning(document: Table, written: Table, where: str) -> None:
         places, trees = zip(*meaning.list_formulas(), strict=True)
         infer_units(trees, meaning.shapes, where=places, loose=True)
         infer_frames(trees, meaning.shapes, where=places)
+
+
+def is_one(tree: Tree) -> bool:
+    """Whether a number is 1 or -1, or a matrix of a unit matrix, which have no unit; another may be a quantity."""
+    if tree.head == PRODUCT:
+        return all(map(is_one, tree.args))
+    return tree in (ONE, MINUS_ONE) or tree.head == "eye"
 
 
 class Meaning:
@@ -140,8 +158,7 @@ class Meaning:
     def times(self, text: Any, name: str, here: str) -> Tree | None:
         """An entry times what it stands before; None for zeros, and for numbers that may be quantities."""
         value, x = read_value(str(text), self.sizes, where=here), build(SYMBOL, (name,))
-        one = str(text).strip(" +-").removesuffix(")").partition("(")[0] in ("1", "eye")
-        if not list_names(value.tree) and not one:
+        if not list_names(value.tree) and not is_one(value.tree):
             return None
         if value.tree is ONE:
             return x
@@ -166,7 +183,9 @@ class Meaning:
                 if (product := self.times(cell, by, place)) is not None:
                     yield place, build("=", (product, result))
 
-    def list_row(self, row: Sequence[Any], sides: Any, name: str, here: str, size: int = 0) -> Iterator[tuple[str, Tree]]:
+    def list_row(
+        self, row: Sequence[Any], sides: Any, name: str, here: str, size: int = 0
+    ) -> Iterator[tuple[str, Tree]]:
         """The terms of a row, which are all in the unit of what it gives."""
         result = self.declare(name, size, name.removeprefix("z of "))
         for j, (cell, (by, _)) in enumerate(zip(row, sides, strict=True)):

@@ -30,13 +30,15 @@ UNITS = {
     "gallery/earth_rate": {"angle": RAD, "R": "1", "earth": W, "dt": S, "corrected": RAD},
     "gallery/euler_rates": {"x": RAD, "w": W, "dt": S, "xn": RAD},
     "gallery/gravity_sign": {"pitch": RAD, "roll": RAD, "g": A, "a": A},
-    "gallery/horizontal_field": {"hx": "uT", "hy": "uT", "two_bx": "uT"},
+    "gallery/horizontal_field": {"hx": "uT", "hy": "uT", "two_bx": "uT", "return": "uT"},
     "gallery/innovation_variance": {"P": "m^2", "R": "m^2", "H": "1", "var": "m^2"},
     "gallery/joseph_column": {"P": "m^2", "K": "1", "r": "m^2"},
     "gallery/magnetic_reference": {"R": "1", "m": "uT", "return": "uT"},
     "gallery/magnetometer_fit": {"m": "uT", "o": "uT", "radius": "uT", "r": "uT", "J": "1"},
     "gallery/normal_gravity": {"return": A, "sin_lat": "1", "equator": A, "factor": "1", "e2": "1"},
-    "gallery/process_noise": {"dt": S, "variance": "m^2/s^4", "return[0]": "m^2", "return[1]": "m^2/s", "return[2]": "m^2/s^2"},
+    "gallery/process_noise": {
+        "dt": S, "variance": "m^2/s^4", "return[0]": "m^2", "return[1]": "m^2/s", "return[2]": "m^2/s^2",
+    },
     "gallery/quaternion_rate": {"q": "1", "w": W, "dq": "1/s"},
     "gallery/radial_distortion": {"x": M, "k[0]": "1/m^2", "k[1]": "1/m^4", "d": M},
     "gallery/quaternion_correction": {"q": "1", "e": W, "d": W},
@@ -102,12 +104,18 @@ def mutants(source, folder):
             document = declared(name, {**units, changed: unit})
             what = f"{name}: {changed} in {unit}"
         else:
-            start = max(text.find(f"{word} {function}") for word in ("void", "double", "fn", "def", "Vector3f",
-                        "Vector3d", "Matrix3d", "=") for function in ("after(", "predict("))
+            start = max(
+                text.find(f"{word} {function}")
+                for word in ("void", "double", "fn", "def", "Vector3f", "Vector3d", "Matrix3d", "=")
+                for function in ("after(", "predict(")
+            )
             places = [
-                (found, spelling) for spelling, unit in units.items() if unit not in ("1", RAD)
+                (found, spelling)
+                for spelling, unit in units.items()
+                if unit not in ("1", RAD)
                 for found in re.finditer(rf"(?<![\w.]){re.escape(spelling)}(?![\w])(\[\d\]|\(\d(, \d)?\))?", text)
-                if found.start() > start and re.search(r"=|return", text[text.rfind("\n", 0, found.start()) : found.start()])
+                if found.start() > start
+                and re.search(r"=|return", text[text.rfind("\n", 0, found.start()) : found.start()])
             ]
             if not places:
                 continue

@@ -85,7 +85,9 @@ def test_a_slip_is_an_error_at_its_entry_that_names_both_units(name, change, whe
 
 def test_numbers_in_place_of_symbols_make_no_alarm():
     """A value has lost the unit of its name: the model with values, and its file, are left alone."""
-    model = nav.Model(**{**CHANNEL, "F": [["0", "1", "0"], ["2*g/R", "-k", "1"], ["0", "0", "0"]], "k": {"unit": "1/s"}})
+    model = nav.Model(
+        **{**CHANNEL, "F": [["0", "1", "0"], ["2*g/R", "-k", "1"], ["0", "0", "0"]], "k": {"unit": "1/s"}}
+    )
     for values in ({"k": 1}, {"g": 1, "k": 1}, {"R": 1}, {"R": 2, "k": 3, "g": "9.81"}, {"s": 1, "T": 1, "g": 2}):
         filled = model.with_values(**values)
         assert nav.Model.from_document(filled.document()) == filled
@@ -102,7 +104,9 @@ def test_nothing_is_said_where_nothing_is_declared():
 
 
 def test_ranges_of_states_are_in_their_units():
-    model = nav.Model("h v", F=[["0", "1"], ["0", "0"]], H=["h"], units={"h": "km", "v": "km/s"}, ranges={"h": ("0 m", "9 km")})
+    model = nav.Model(
+        "h v", F=[["0", "1"], ["0", "0"]], H=["h"], units={"h": "km", "v": "km/s"}, ranges={"h": ("0 m", "9 km")}
+    )
     assert model.document()["ranges"]["h"] == ["0", "9"] or model.read().ranges["h"][1] == 9
 
 
@@ -115,7 +119,11 @@ def with_units(document, geodetic):
     units = read_problem(document).units(card)
     said = {n: {"range": v} if isinstance(v, list) else {"sign": v} for n, v in document["parameters"].items()}
     parameters = {name: value | ({"unit": units[name]} if name in units else {}) for name, value in said.items()}
-    return {**document, "parameters": parameters, "units": {n: units[n] for n in document["model"]["states"] if n in units}}
+    return {
+        **document,
+        "parameters": parameters,
+        "units": {n: units[n] for n in document["model"]["states"] if n in units},
+    }
 
 
 GEODETIC = ("Farrell", "Groves, local", "NaveGo", "PSINS")
@@ -133,26 +141,35 @@ def test_published_models_agree_with_the_units_of_their_roles():
 
 def slips(source):
     """Endless random slips: what was changed, and the changed document."""
-    documents = [*published().items(), *((name, nav.Model(**model).document()) for name, model in MODELS.items() if name != "steps")]
+    documents = [
+        *published().items(),
+        *((name, nav.Model(**model).document()) for name, model in MODELS.items() if name != "steps"),
+    ]
     while True:
         name, document = source.choice(documents)
         document = copy.deepcopy(document)
         F = document["model"].get("F") or [document["model"]["dynamics"]]
-        units = {n: v["unit"] for n, v in document["parameters"].items() if isinstance(v, dict) and v.get("unit", "1") not in ("1", "rad")}
+        units = {
+            n: v["unit"]
+            for n, v in document["parameters"].items()
+            if isinstance(v, dict) and v.get("unit", "1") not in ("1", "rad")
+        }
         i, j = source.randrange(len(F)), source.randrange(len(F[0]))
         used = [found for found in re.finditer(r"[A-Za-z_]\w*", F[i][j]) if found[0] in units]
         if source.random() < 2 / 3:
             if not used:
                 continue
             at = source.choice(used)
-            new = source.choice([f"{at[0]}**2", f"(1/{at[0]})", f"{at[0]}**3"])
+            new = source.choice([f"({at[0]}**2)", f"(1/{at[0]})", f"({at[0]}**3)"])
             if isinstance(document["parameters"][at[0]], dict) and "vector" in document["parameters"][at[0]]:
                 new = f"({at[0]}*norm({at[0]}))"
             F[i][j] = F[i][j][: at.start()] + new + F[i][j][at.end() :]
             what = f"{name}: F[{i}][{j}] = {F[i][j]}"
         else:
             texts = " ".join(cell for row in F for cell in row)
-            changed = source.choice([n for n in (*units, *document["units"]) if n in document["units"] or re.search(rf"\b{n}\b", texts)])
+            changed = source.choice(
+                [n for n in (*units, *document["units"]) if n in document["units"] or re.search(rf"\b{n}\b", texts)]
+            )
             table = document["units"] if changed in document["units"] else document["parameters"]
             said = table[changed] if isinstance(table[changed], dict) else {"unit": table[changed]}
             table[changed] = {**said, "unit": f"{said['unit']} {source.choice('ms')}^{source.choice((-1, 1))}"}
