@@ -152,7 +152,7 @@ class Audit(Answer):
     files     : what was read of each source
     questions : the verdicts
     formulas  : the outputs of a function, where no question was asked
-    meaningless : place and reason of every formula that the declared units do not allow
+    meaningless : place and reason of every formula that the declared units and frames do not allow
     """
 
     files: tuple[AuditedFile, ...]
@@ -265,7 +265,8 @@ def audit_specification(path: Path, only: str | None = None) -> Audit:
     questions = [read_question(block, by_name, names, path.parent, join_place(place, i)) for i, block in blocks]
     require_distinct((question.name for question in questions), place)
     chosen = [question for question in questions if only in (None, question.name)]
-    entries = [entry for question in chosen for entry in list_entries(question)] if names.units else []
+    noted = names.units or names.frames
+    entries = [entry for question in chosen for entry in list_entries(question)] if noted else []
     meaningless = list_meaningless(names, [*by_name.values()], entries)
     return Audit(describe_files([*by_name.values()]), tuple(map(answer_question, chosen)), meaningless=(*meaningless,))
 

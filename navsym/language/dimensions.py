@@ -207,11 +207,7 @@ class Inference:
     ) -> dict[Tree, Units]:
         """The units of all parts, entry by entry; what is refused is raised, or put into the list and passed over."""
         values: dict[Tree, Units] = {}
-        k = 0
-        for part in list_parts(*trees):
-            while trees[k] in values:
-                k += 1
-            self.where = places[k]
+        for self.where, part in list_places(trees, places):
             try:
                 values[part] = self.step(part, [values[inner] for inner in parts_of(part)])
             except DomainError as error:
@@ -529,6 +525,16 @@ def infer_units(
             else:
                 found.pop(entry, None)
     return {entry: print_unit(powers) for entry, powers in found.items()}
+
+
+def list_places(trees: Sequence[Tree], places: Sequence[str]) -> Iterator[tuple[str, Tree]]:
+    """Every part once, behind its own parts, with the place of the first tree that has it."""
+    met, k = set[Tree](), 0
+    for part in list_parts(*trees):
+        while trees[k] in met:
+            k += 1
+        met.add(part)
+        yield places[k], part
 
 
 def list_forms(trees: Sequence[Tree], inference: Inference) -> Iterator[tuple[str, Form]]:

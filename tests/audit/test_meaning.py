@@ -166,3 +166,32 @@ def test_an_unknown_unit_is_refused_at_its_key(tmp_path):
     with pytest.raises(NavsymError, match="unit") as error:
         meaningless(document, (EXAMPLES / "gallery"))
     assert error.value.where.endswith("symbols.g.unit")
+
+
+@pytest.mark.parametrize(
+    ("line", "found"),
+    [
+        ("y[i] = v[i] + w[i];", "v[0] in n and w[0] in b"),
+        ("y[i] = v[i] + C[i][0] * w[0] + C[i][1] * w[1] + C[i][2] * w[2];", ""),
+        ("y[i] = v[i] + 2.0 * k * (C[0][i] * v[0] + C[1][i] * v[1] + C[2][i] * v[2]);", "in n and"),
+        ("y[i] = C[i][0] * e[0];", "e[0] in e beside C[0][0], b to n"),
+        ("y[i] = v[0] * w[i] - v[i] * w[0] + u[i];", ""),
+        ("y[i] = w[i];", "w[0] in b and y[0] in n"),
+        ("y[i] = v[i] + u[i] * w[i]; if (v[i] > w[i]) y[i] = v[i];", "v[0] in n and w[0] in b"),
+    ],
+)
+def test_a_sum_of_two_frames_is_found_at_its_line(line, found, tmp_path):
+    arguments = "double C[3][3], double v[3], double w[3], double e[3], double u[3], double k, double y[3]"
+    (tmp_path / "a.c").write_text(f"void f({arguments})\n{{\n for (int i = 0; i < 3; i++) {{\n {line}\n }}\n}}\n")
+    frames = (("v", "n"), ("w", "b"), ("e", "e"), ("y", "n"))
+    symbols = "".join(f'{name} = {{ vector = 3, frame = "{frame}" }}\n' for name, frame in frames)
+    symbols += 'C = { matrix = [3, 3], rotation = true, frame = "b to n" }\n'
+    question = '[[question]]\nname = "same"\nkind = "equal"\nleft = "a:y"\nright = "a:y"\n'
+    path = tmp_path / "a.toml"
+    path.write_text(f'[[code]]\nname = "a"\nfile = "a.c"\nfunction = "f"\n[code.symbols]\n{symbols}{question}')
+    report = nav.audit(path)
+    assert report.holds == (not found)
+    if found:
+        assert report.meaningless[0][0] == f"{tmp_path / 'a.c'}:4" and found in report.meaningless[0][1], (
+            report.meaningless
+        )
