@@ -12,6 +12,7 @@ from typing import Any
 from navsym.audit.cases import Case
 from navsym.audit.decide import Decision, Scope, decide_entry, decide_together, measure
 from navsym.audit.form import spell_alike, spell_entry
+from navsym.audit.meaning import list_meaningless
 from navsym.audit.mend import Budget, suggest
 from navsym.audit.names import Names
 from navsym.audit.questions import SENSES, Entry, Question, list_entries, read_question
@@ -151,16 +152,18 @@ class Audit(Answer):
     files     : what was read of each source
     questions : the verdicts
     formulas  : the outputs of a function, where no question was asked
+    meaningless : place and reason of every formula that the declared units and frames do not allow
     """
 
     files: tuple[AuditedFile, ...]
     questions: tuple[AuditedQuestion, ...] = ()
     formulas: tuple[OutputFormula, ...] = ()
+    meaningless: tuple[tuple[str, str], ...] = ()
 
     @property
     def holds(self) -> bool:
-        """True when no question is REFUTED or OPEN."""
-        return all(question.status.holds for question in self.questions)
+        """True when no question is REFUTED or OPEN, and no formula is meaningless."""
+        return all(question.status.holds for question in self.questions) and not self.meaningless
 
     def __getitem__(self, name: str) -> AuditedQuestion:
         return next(question for question in self.questions if question.name == name)
@@ -178,6 +181,7 @@ class Audit(Answer):
             ("", ("file", "language", "statements read"), files),
             ("", ("not read", "because"), refused),
             ("", ("output", "line", "formula", "case"), outputs),
+            ("", ("meaningless", "because"), [*self.meaningless]),
         ]
         for q in self.questions:
             title = f"{q.name} ({q.kind}): {q.status}, {sum(e.status.holds for e in q.entries)} of {len(q.entries)}"
@@ -202,12 +206,19 @@ class Audit(Answer):
 
     def annotations(self) -> list[str]:
         """The failures, and ``file:line: message`` for every refused line."""
-        return [*self.list_failures(), *(f"{f.file}:{n}: not read: {why}" for f in self.files for n, why in f.refused)]
+        meaningless = [f"{place}: {why}" for place, why in self.meaningless]
+        return [
+            *self.list_failures(),
+            *meaningless,
+            *(f"{f.file}:{n}: not read: {why}" for f in self.files for n, why in f.refused),
+        ]
 
     def document(self, every: bool = False) -> dict[str, Any]:
         """The JSON document of ``navsym audit``."""
         document: dict[str, Any] = {"read": {"files": [file.document() for file in self.files]}}
         document["questions"] = [question.document(every) for question in self.questions]
+        if self.meaningless:
+            document["meaningless"] = [{"place": place, "why": why} for place, why in self.meaningless]
         return {**document, "formulas": [f.document() for f in self.formulas]} if self.formulas else document
 
 
@@ -253,8 +264,11 @@ def audit_specification(path: Path, only: str | None = None) -> Audit:
     blocks = enumerate(read_blocks(document, "question", where))
     questions = [read_question(block, by_name, names, path.parent, join_place(place, i)) for i, block in blocks]
     require_distinct((question.name for question in questions), place)
-    chosen = (question for question in questions if only in (None, question.name))
-    return Audit(describe_files([*by_name.values()]), tuple(map(answer_question, chosen)))
+    chosen = [question for question in questions if only in (None, question.name)]
+    noted = names.units or names.frames
+    entries = [entry for question in chosen for entry in list_entries(question)] if noted else []
+    meaningless = list_meaningless(names, [*by_name.values()], entries)
+    return Audit(describe_files([*by_name.values()]), tuple(map(answer_question, chosen)), meaningless=(*meaningless,))
 
 
 def read_sources(document: Mapping[str, Any], folder: Path, where: str) -> tuple[Names, dict[str, Source]]:

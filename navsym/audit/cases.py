@@ -11,7 +11,7 @@ from typing import Any
 from flint import fmpq
 
 from navsym.audit.form import Function, Unit
-from navsym.audit.values import COMPARE, Value, Variable
+from navsym.audit.values import COMPARE, Index, Value, Variable
 from navsym.core.errors import DomainError, TooLargeError
 from navsym.language.polynomials import to_polynomial
 from navsym.language.tree import NUMBER, Tree, build_sum, list_names, list_parts, negate
@@ -59,6 +59,7 @@ class Reading:
     valueless : assignments that are read and depend on what is not, with its reason
     ways      : whether conditions that are not read, and maxima, have two ways
     steps     : of its longest case
+    written   : formula, variable and place of everything that is assigned -> its line
     """
 
     unit: Unit
@@ -70,13 +71,14 @@ class Reading:
     valueless: dict[tuple[int, int], str] = field(default_factory=dict)
     ways: tuple[bool, bool] = (True, True)
     steps: int = 0
+    written: dict[tuple[Tree, str, Index], int] = field(default_factory=dict)
 
 
 def list_cases(start: Any, reading: Reading, function: Function, is_bold: bool, is_split: bool) -> list[Case]:
     """The cases of a function; none where there are more than 32."""
     cases: list[Case] = []
     waiting: list[list[bool]] = [[]]
-    for table in (reading.met, reading.refused, reading.refused_spans, reading.valueless):
+    for table in (reading.met, reading.refused, reading.refused_spans, reading.valueless, reading.written):
         table.clear()  # type: ignore[attr-defined]
     while waiting:
         machine = start(waiting.pop(), is_bold, is_split)

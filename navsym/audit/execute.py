@@ -478,6 +478,7 @@ class Machine(Evaluator):
             number = promote(variable.number) if self.unit.rules.integer else cell.number
             number = "real" if number in ("quaternion", "auto") else number
             cell = Scalar(cell.tree, number, statement.line, statement)
+            self.reading.written.setdefault((cell.tree, variable.name, place), statement.line)
         variable.cells[place] = cell
         owner = self.frame.get(head_of(variable.name), variable)
         if owner is not variable and owner.views:

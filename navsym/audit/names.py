@@ -31,6 +31,7 @@ class Names:
     declarations : name of a symbol -> its declaration, as in [symbols]
     inputs       : names that no source assigns, which an expression may hold though no source reads them
     rotations    : matrices that are rotations, with the names of their nine symbols row by row
+    units, frames : squeezed spelling of an input, or of an array of them -> its declared unit or frame
     """
 
     symbols: dict[str, str] = field(default_factory=dict)
@@ -39,6 +40,8 @@ class Names:
     written: dict[str, Any] = field(default_factory=dict)
     inputs: set[str] = field(default_factory=set)
     rotations: dict[str, tuple[str, ...]] = field(default_factory=dict)
+    units: dict[str, str] = field(default_factory=dict)
+    frames: dict[str, str] = field(default_factory=dict)
 
     def symbol(self, spelling: str) -> Tree:
         """The symbol of an input, made when it is first met."""

@@ -23,11 +23,13 @@ from navsym.audit.syntax import SIZE, read_decimal
 from navsym.audit.values import Array, Index, Scalar, places_of, relate_rotation
 from navsym.core.choice import one_of
 from navsym.core.errors import DomainError, DuplicateError, ExpressionSyntaxError, ShapeError, UnknownSymbolError
+from navsym.core.units import read_unit as check_unit
 from navsym.language.expression import read_tree
 from navsym.language.files import decode, name_file, read_bytes
 from navsym.language.names import expect_keys, join_place, quote, suggest_nearest
 from navsym.language.printer import print_tree
 from navsym.language.schema import Table, as_list, as_table, as_text, require_key
+from navsym.language.shapes import NOTES
 from navsym.language.tree import NUMBER, ONE, POWER, PRODUCT, SUM, ZERO, Tree, build_number, build_sum, negate
 from navsym.prove.rooms.goals import player
 
@@ -294,13 +296,18 @@ def read_symbols(table: Table, names: Names, where: str) -> tuple[dict[str, Inde
     shapes, symmetric = {}, set()
     for spelling, declaration in table.items():
         place = join_place(where, spelling)
+        for note, said in (("unit", names.units), ("frame", names.frames)):
+            if isinstance(declaration, dict) and note in declaration:
+                said[squeeze(spelling)] = text = as_text(declaration[note], join_place(place, note), f"a {note}")
+                if note == "unit":
+                    check_unit(text, join_place(place, note))
         sizes = declaration.get("matrix", declaration.get("vector")) if isinstance(declaration, dict) else None
         if sizes is None:
             if isinstance(declaration, dict):
-                expect_keys(declaration, ("name", "range", "sign"), place)
+                expect_keys(declaration, ("name", "range", "sign", *NOTES), place)
             names.declare(spelling, declaration, place)
             continue
-        expect_keys(declaration, ("matrix", "vector", "symmetric", "start", "rotation"), place)
+        expect_keys(declaration, ("matrix", "vector", "symmetric", "start", "rotation", *NOTES), place)
         given = sizes if isinstance(sizes, list) else [sizes]
         if not all(isinstance(n, int) and not isinstance(n, bool) and 0 < n <= LARGEST_SIDE for n in given):
             message = f"expected sizes from 1 to {LARGEST_SIDE}, such as [3, 3]; got {quote(sizes)}; correct them"

@@ -37,7 +37,7 @@ def command(
         emit({}, as_json=False, text="\n".join(lines))
     else:
         emit(answer.document(all_), as_json=json_, text=lambda: as_text(answer, all_))
-    return 1 if any(question.status == nav.REFUTED for question in answer.questions) else 0
+    return 1 if answer.meaningless or any(q.status == nav.REFUTED for q in answer.questions) else 0
 
 
 def as_text(answer: Audit, every: bool = False) -> str:

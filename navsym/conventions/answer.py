@@ -142,6 +142,17 @@ class Conventions(Answer):
         matrices = {name: print_matrix(getattr(self.problem, name)) for name in names}
         return {"name": self.name, "states": list(self.problem.states), **matrices}
 
+    def units(self) -> dict[str, str]:
+        """The units of the states, and of the quantities that have a name, under the first card or the nearest.
+
+        >>> import navsym as nav
+        >>> units = nav.conventions("examples/card.toml").units()
+        >>> units["dv1"], units["bg1"], units["f1"]
+        ('m/s', 'rad/s', 'm/s^2')
+        """
+        card = self.cards[0] if self.cards else self.nearest
+        return {} if card is None else self.problem.units(card)
+
     def certificates(self) -> list[Mapping[str, Any]]:
         """The certificates of single entries; that a card has these entries is derived, not certified."""
         return [*self.proofs]
@@ -174,6 +185,7 @@ class Conventions(Answer):
             "examined": self.examined,
             "unused": list(self.unused),
             "model": self.model(),
+            "units": self.units(),
         }
 
     def __repr__(self) -> str:

@@ -24,7 +24,7 @@ from navsym.language.schema import (
     require_distinct,
     require_key,
 )
-from navsym.language.tree import MINUS_ONE, ONE, ZERO, Tree, build_sum, build_symbol
+from navsym.language.tree import MINUS_ONE, ONE, SYMBOL, ZERO, Tree, build_sum, build_symbol
 from navsym.language.tree import replace as replace_parts
 from navsym.models.modelfile import BESIDE, TABLES, read_ranges
 
@@ -39,8 +39,19 @@ QUANTITIES: Mapping[str, tuple[int, ...]] = {
     "gravitational_parameter": (1,),
 }
 
+#: Unit -> the roles and quantities that have it; a position in latitude, longitude and height has three.
+UNITS: Mapping[str, str] = {
+    "m": "position position_correction height radii radius_slope lever_arm",
+    "m/s": "velocity velocity_body velocity_correction",
+    "rad": "attitude attitude_correction latitude longitude earth_angle wander_angle rotation quaternion",
+    "rad/s": "gyro_bias angular_rate earth_rate transport_rate",
+    "m/s^2": "accelerometer_bias specific_force specific_force_body gravity",
+    "m^3/s^2": "gravitational_parameter",
+    "1": "gyro_scale accelerometer_scale",
+}
+
 #: Tables of a model file that say nothing about the error dynamics.
-UNUSED = tuple(name for name in TABLES if name not in ("model", "parameters"))
+UNUSED = tuple(name for name in TABLES if name not in ("model", "parameters", "units"))
 
 #: Names of quantities that the user has not given begin like this.
 HIDDEN = "unnamed_"
@@ -94,6 +105,19 @@ class Problem:
         rows = zip(*BY_QUATERNION, strict=True) if words.get("quaternion_direction") == BACKWARD else BY_QUATERNION
         C = tuple(replace_parts(read_tree(text, None), parts) for row in rows for text in row)
         return replace(self, quantities={**self.quantities, "rotation": C})
+
+    def units(self, card: Card) -> dict[str, str]:
+        """The units of states and of quantities with a name, in the errors of a card."""
+        units = {word: unit for unit, words in UNITS.items() for word in words.split()}
+        components = {role: [build_symbol(self.states[k]) for k in places] for role, places in self.roles.items()}
+        found = {
+            tree.args[0]: units[name]
+            for name, trees in ({**self.quantities} | components).items() if name in units
+            for tree in trees if tree.head == SYMBOL
+        }  # fmt: skip
+        if card.position_error == "geodetic" and "position" in self.roles:
+            found |= dict.fromkeys((self.states[k] for k in self.roles["position"][:2]), "rad")
+        return found
 
     @property
     def is_placed(self) -> bool:

@@ -5,6 +5,10 @@ exponential is taken of has none: linear equations, solved exactly as they come.
 each entry of a vector or matrix by itself. Where no unit is declared, nothing is said. The radian is 1.
 
 Scales (km beside m, degrees) are looked at in a second pass, where a number such as 1000 or pi/180 may convert.
+
+Numbers of a formula have no unit. Those of models and of source code often have one, which nobody wrote: with ``loose``
+a number that is added, compared or chosen has that of its neighbours, and as a factor each has an unknown one, except
+whole numbers up to 12 and their quotients, which stay numbers.
 """
 
 from __future__ import annotations
@@ -12,6 +16,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
 from itertools import chain, permutations
+from math import prod
 from typing import Any
 
 from navsym.core.errors import DomainError
@@ -19,7 +24,19 @@ from navsym.core.units import Powers, combine, print_unit, read_unit
 from navsym.language.names import FUNCTIONS
 from navsym.language.printer import TIGHT, WHOLE, Text, Writer
 from navsym.language.shapes import Shape
-from navsym.language.tree import NUMBER, POWER, PRODUCT, SUM, SYMBOL, Tree, build, fold_tree, list_names, list_parts
+from navsym.language.tree import (
+    NUMBER,
+    POWER,
+    PRODUCT,
+    SUM,
+    SYMBOL,
+    ZERO,
+    Tree,
+    build,
+    list_names,
+    list_parts,
+    parts_of,
+)
 from navsym.language.vectors import BINDERS, INFINITE, RELATIONS
 
 #: The unit of a part: ("unit", base) and ("name", symbol) -> exponent. None is zero, which has every unit.
@@ -97,10 +114,12 @@ class Inference:
 
     declared : name -> powers of the unit, of every entry of a vector or matrix
     scales   : look at scales, and not at dimensions
+    loose    : numbers may have units
     """
 
-    def __init__(self, shapes: Mapping[str, Shape], declared: Mapping[str, Powers], scales: bool, where: str):
-        self.shapes, self.scales, self.where = shapes, scales, where
+    def __init__(self, shapes: Mapping[str, Shape], declared: Mapping[str, Powers], scales: bool, loose: bool):
+        self.shapes, self.scales, self.loose, self.where = shapes, scales, loose, ""
+        self.bare = dict[Tree, bool]()  # numbers, and whether they are 0
         self.declared = {name: self.project(powers) for name, powers in declared.items()}
         self.system = System()
         self.numbers = 0
@@ -122,10 +141,17 @@ class Inference:
             return [[self.declared.get(name, {}) for _ in row] for row in rows]
         return [[{("name", entry): Fraction(1)} for entry in row] for row in rows]
 
-    def number(self, part: Tree) -> Form:
-        """A number; in the pass of scales one that may convert units is an unknown of its own."""
-        small = part.head == NUMBER and max(abs(part.args[0].numerator), part.args[0].denominator) <= NUMBERS
-        if small or not self.scales:
+    def is_small(self, part: Tree) -> bool:
+        """Whether no unit is hidden in a number."""
+        if part.head == NUMBER:
+            return max(abs(part.args[0].numerator), part.args[0].denominator) <= NUMBERS
+        return all(map(self.is_small, parts_of(part))) and not (self.scales and part.head == "pi")
+
+    def number(self, part: Tree, beside: str) -> Cell:
+        """A number beside others; one that may convert units, or have one, is an unknown of its own."""
+        if self.bare[part] or (self.loose and beside in NEIGHBOURS):
+            return None
+        if self.is_small(part) or not (self.scales or self.loose):
             return {}
         self.numbers += 1
         return {("number", self.numbers): Fraction(1)}
@@ -176,15 +202,29 @@ class Inference:
 
     # Parts
 
-    def units_of(self, tree: Tree) -> Units:
-        """The units of a tree, entry by entry."""
-        return fold_tree(tree, self.step)
+    def units_of(
+        self, trees: Sequence[Tree], places: Sequence[str], refused: list[DomainError] | None = None
+    ) -> dict[Tree, Units]:
+        """The units of all parts, entry by entry; what is refused is raised, or put into the list and passed over."""
+        values: dict[Tree, Units] = {}
+        for self.where, part in list_places(trees, places):
+            try:
+                values[part] = self.step(part, [values[inner] for inner in parts_of(part)])
+            except DomainError as error:
+                if refused is None:
+                    raise
+                refused.append(error)
+                values[part] = [[None]]
+        return values
 
     def step(self, part: Tree, inner: list[Units]) -> Units:
         """The units of a part from those of its own parts."""
         head = part.head
-        if head == NUMBER or head == "pi":
-            return [[None if head == NUMBER and part.args[0] == 0 else self.number(part)]]
+        if head in PLAIN and all(p in self.bare for p in parts_of(part)):
+            zeros = [self.bare[p] for p in parts_of(part)]
+            self.bare[part] = (head == PRODUCT and any(zeros)) or (head == SUM and all(zeros)) or part is ZERO
+            return [[self.number(part, "")]]
+        inner = [[[self.number(p, head)]] if p in self.bare else x for p, x in zip(parts_of(part), inner, strict=True)]
         if head == SYMBOL:
             return [[None]] if part.args[0] == INFINITE else self.symbol(part.args[0])
         if head == SUM:
@@ -221,10 +261,10 @@ class Inference:
 
     def power(self, part: Tree, base: Cell, exponent: Cell) -> Cell:
         """A power: with an exponent that is no number the base has no unit, unless the exponent is a whole number."""
-        if part.args[1].head == NUMBER:
-            return None if base is None else scale(base, part.args[1].args[0])
+        if (number := evaluate(part.args[1])) is not None:
+            return None if base is None else scale(base, number)
         self.plain(exponent, part.args[1], "an exponent")
-        if all(self.is_whole(name) for name in list_names(part.args[1])):
+        if all(map(self.is_whole, list_names(part.args[1]))):
             self.numbers += 1
             return {("name", f"power {self.numbers}"): Fraction(1)} if base else base
         self.plain(base, part.args[0], "a power with a symbol as exponent")
@@ -236,8 +276,7 @@ class Inference:
 
     def relate(self, part: Tree, inner: list[Units]) -> None:
         """Both sides of a relation; a number beside a quantity may be a value of it in the units of the author."""
-        bare = [not list_names(side) for side in part.args]
-        if part.head in ("=", "!=") or not any(bare):
+        if part.head in ("=", "!=") or self.bare.keys().isdisjoint(part.args):
             self.each(part, inner, "two sides")
 
     def bound(self, part: Tree, cells: list[Cell]) -> Cell:
@@ -395,6 +434,9 @@ class Inference:
         return [[multiply(cell, rate) for cell in row] for row in units]
 
 
+#: Heads of numbers, if their parts are numbers, and those whose numbers have the unit of their neighbours.
+PLAIN = {NUMBER, "pi", SUM, PRODUCT, POWER, *FUNCTIONS}
+NEIGHBOURS = {SUM, "where", *ONLY_ALIKE, *ALIKE, *RELATIONS}
 STEPS = {
     "T": "transpose", "@": "at", "conj": "abs", **dict.fromkeys((*ONLY_ALIKE, *ALIKE), "alike"), "floor": "erf",
 }  # fmt: skip
@@ -412,19 +454,40 @@ def scale(form: Form, exponent: Fraction) -> Form:
     return combine([(form, exponent)])  # type: ignore[list-item,return-value]
 
 
+def evaluate(tree: Tree) -> Fraction | None:
+    """A number that is written as products, quotients and sums, as an exponent may be."""
+    if tree.head == NUMBER:
+        return tree.args[0]  # type: ignore[no-any-return]
+    numbers = [evaluate(part) for part in tree.args] if tree.head in (SUM, PRODUCT, POWER) else [None]
+    if any(x is None for x in numbers):
+        return None
+    if tree.head == POWER:
+        return 1 / numbers[0] if numbers[1] == -1 and numbers[0] else None
+    return sum(numbers) if tree.head == SUM else prod(numbers)  # type: ignore[arg-type,return-value]
+
+
 def is_integer(shape: Shape) -> bool:
     """Whether a name is declared as a whole number."""
     return any("integer" in limits[2] for limits in shape.ranges.values())
 
 
 def infer_units(
-    trees: Sequence[Tree], shapes: Mapping[str, Shape], rates: Mapping[str, Tree] | None = None, *, where: str = ""
+    trees: Sequence[Tree],
+    shapes: Mapping[str, Shape],
+    rates: Mapping[str, Tree] | None = None,
+    *,
+    where: str | Sequence[str] = "",
+    loose: bool = False,
+    refused: list[DomainError] | None = None,
 ) -> dict[str, str]:
     """The units of all names of some formulas, as far as the declared ones settle them.
 
-    trees  : relations, or parts whose own sums are looked at
-    shapes : name -> declaration, with ``unit`` where there is one
-    rates  : name -> its derivative by the time t
+    trees   : relations, or parts whose own sums are looked at
+    shapes  : name -> declaration, with ``unit`` where there is one
+    rates   : name -> its derivative by the time t
+    where   : of all formulas, or of each
+    loose   : numbers may have units, as in source code
+    refused : where errors go, so that the others are found too
 
     Returns name (of an entry, for an array) -> unit. Raises DomainError that names two parts whose units differ where
     they should be one; says nothing where no unit is declared.
@@ -436,24 +499,25 @@ def infer_units(
     >>> infer_units([read_hypothesis("v = a*T", dict.fromkeys(shapes))], shapes)
     {'v': 'm/s', 'a': 'm/s^2', 'T': 's'}
     """
-    names = {name for tree in (*trees, *(rates or {}).values()) for name in list_names(tree)}
-    names |= {TIME, *(rates or {})}
+    names = {*list_names(*trees, *(rates or {}).values()), TIME, *(rates or {})}
     known = [shapes[name] for name in sorted(names & set(shapes))]
     declared = {shape.name: read_unit(shape.unit) for shape in known if shape.unit}
-    if not declared or any(shapes[name].sizes for name in names & set(shapes)):
+    if not declared or any(shape.sizes for shape in known):
         return {}
     passes = [False]
     if any(not isinstance(key, str) or key == "pi" for powers in declared.values() for key in powers):
         passes.append(True)
+    places = [where] * len(trees) if isinstance(where, str) else where
     found: dict[str, Powers] = {}
     for scales in passes:
-        inference = Inference(shapes, declared, scales, where)
+        inference = Inference(shapes, declared, scales, loose)
         for name, rate in (rates or {}).items():
-            own = inference.by_time(inference.symbol(name))
-            for x, y in zip(chain(*own), chain(*inference.units_of(rate)), strict=True):
+            own, units = inference.by_time(inference.symbol(name)), inference.units_of([rate], [""])[rate]
+            for x, y in zip(chain(*own), chain(*units), strict=True):
                 inference.equate(x, y, f"the rate of {name} and its formula", rate, rate)
-        for tree in trees:
-            inference.units_of(tree)
+        inference.units_of(trees, places, refused)
+        if refused:
+            return {}
         for entry, form in list_forms(trees, inference):
             reduced = inference.system.reduce(form)
             if all(key[0] == "unit" for key in reduced):
@@ -461,6 +525,16 @@ def infer_units(
             else:
                 found.pop(entry, None)
     return {entry: print_unit(powers) for entry, powers in found.items()}
+
+
+def list_places(trees: Sequence[Tree], places: Sequence[str]) -> Iterator[tuple[str, Tree]]:
+    """Every part once, behind its own parts, with the place of the first tree that has it."""
+    met, k = set[Tree](), 0
+    for part in list_parts(*trees):
+        while trees[k] in met:
+            k += 1
+        met.add(part)
+        yield places[k], part
 
 
 def list_forms(trees: Sequence[Tree], inference: Inference) -> Iterator[tuple[str, Form]]:

@@ -120,11 +120,15 @@ class Unification:
 
 
 def infer_frames(
-    trees: Sequence[Tree], shapes: Mapping[str, Shape], rates: Mapping[str, Tree] | None = None, *, where: str = ""
+    trees: Sequence[Tree],
+    shapes: Mapping[str, Shape],
+    rates: Mapping[str, Tree] | None = None,
+    *,
+    where: str | Sequence[str] = "",
 ) -> dict[str, str]:
     """The frames of all vectors and matrices of some formulas, as far as the declared ones settle them.
 
-    trees, shapes, rates : as for :func:`navsym.language.dimensions.infer_units`; a rate stays in the frame
+    trees, shapes, rates, where : as for :func:`navsym.language.dimensions.infer_units`; a rate stays in the frame
 
     Returns name -> frame, ``b to n`` for a matrix. Raises DomainError that names two parts in different frames;
     says nothing where no vector has a frame and all matrices lead alike.
@@ -145,11 +149,12 @@ def infer_frames(
     several = len(declared) > 1 and all(shape.frame for shape in used if shape.size)
     if not (several or any(x.frame and x.kind == "vector" for x in used)) or any(shape.sizes for shape in used):
         return {}
-    unification = Unification(shapes, where)
+    unification = Unification(shapes, where if isinstance(where, str) else "")
     for name, rate in slopes.items():
         sides = [unification.symbol(name), fold_tree(rate, unification.step)]
         unification.alike([rate, rate], sides, f"{name} and its rate")
-    for tree in trees:
+    for k, tree in enumerate(trees):
+        unification.where = where if isinstance(where, str) else where[k]
         fold_tree(tree, unification.step)
     found = {}
     for shape in used:

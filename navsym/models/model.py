@@ -23,12 +23,13 @@ from navsym.language.tomlfile import read_toml, toml_text
 from navsym.language.values import declared_unit, read_assumptions, write_declaration, write_entries, write_value
 from navsym.language.vectors import is_wide
 from navsym.models.linear import LinearModel, linear_row
+from navsym.models.meaning import UNCHECKED
 from navsym.models.modelfile import BasisFile, ModelFile, linear_model, model_from, need_fixed, read_model
 
 #: Keys of a model file -> the arguments that write them, for the place of an error.
 PLACES = (
     (r"^Model: (model|basis|parameters)\.", "Model: "),
-    (r"^Model: measurement\[(\d+)\]\.h", r"Model: H[\1]"),
+    (r"^Model: measurement\[(\d+)\]\.[hz]", r"Model: H[\1]"),
     (r"^Model: measurement\[(\d+)\]\.sigma", r"Model: sigma[\1]"),
     (r"^Model: measurement\[(\d+)\]\.name", r"Model: measurements[\1]"),
     (r"^Model: measurement$", "Model: measurements"),
@@ -58,6 +59,7 @@ class Model:
     inputs       : unknown input -> its column of n entries, or "unknown" where dynamics name it; for ``observe`` only
     ranges       : state, parameter or ``dt`` -> two ends, what the inputs of exported code may be; for ``export`` only
     blocks       : tables of measurements whose errors are bounded together: ``{"measurements": "z1 z2", "norm": "l2"}``
+    units        : state, measurement, input or t -> its unit, or ``{"unit": "m/s", "frame": "n"}``; seconds by default
     parameters   : name -> declaration; keywords that remain mean the same
 
     Entries are text of the language of files, ints, Fractions, sympy expressions, or matrices and integer arrays
@@ -103,6 +105,7 @@ class Model:
         inputs: Mapping[str, Any] | None = None,
         ranges: Mapping[str, Any] | None = None,
         blocks: Sequence[Mapping[str, Any]] = (),
+        units: Mapping[str, Any] | None = None,
         name: str = "model",
         parameters: Mapping[str, Any] | None = None,
         **declared: Any,
@@ -118,13 +121,14 @@ class Model:
                     document["model"][key] = write_entries(value, f"Model: {key}")
             if relations is not None:
                 document["model"]["relations"] = relations
+            document["units"] = dict(require_table(units, "Model: units"))
             document["parameters"] = declarations
             for key, table in (("rates", rates), ("inputs", inputs), ("ranges", ranges)):
                 if table is not None:
                     rows = require_table(table, f"Model: {key}").items()
-                    units = declarations if key == "ranges" else {}
+                    own = {**document["units"], **declarations} if key == "ranges" else {}
                     document[key] = {
-                        n: write_entries(value, f"Model: {key}.{n}", declared_unit(n, units)) for n, value in rows
+                        n: write_entries(value, f"Model: {key}.{n}", declared_unit(n, own)) for n, value in rows
                     }
             linear = names if dynamics is None else None
             document["measurement"] = measurement_blocks(H, sigma, measurements, linear, declarations)
@@ -602,6 +606,7 @@ def document_of(contents: ModelFile | BasisFile) -> dict[str, Any]:
         tables: dict[str, Any] = {"basis": basis, "parameters": parameters, "targets": targets}
         return {table: content for table, content in tables.items() if content}
     tables = {"model": {"name": contents.name, "states": list(contents.states)}, "parameters": parameters}
+    tables["units"] = UNCHECKED if any(p.unit for p in contents.parameters.values()) else {}
     tables["rates"] = {name: to_text(rate) for name, rate in contents.rates.items()}
     tables["inputs"] = {name: [*map(to_text, column)] or "unknown" for name, column in contents.inputs.items()}
     tables["measurement"] = [

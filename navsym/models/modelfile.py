@@ -42,6 +42,7 @@ from navsym.language.tomlfile import read_toml
 from navsym.language.values import declared_unit, write_value
 from navsym.models.blocks import write_out
 from navsym.models.linear import LinearModel
+from navsym.models.meaning import require_meaning
 
 # What a model file says, as plain exact data.
 
@@ -263,7 +264,9 @@ def read_targets(document: Table, known: Known, names: tuple[str, ...], where: s
     return targets
 
 
-SYSTEM = ("model", "parameters", "rates", "inputs", "measurement", "block", "piece", "interval", "targets", "ranges")
+SYSTEM = (
+    "model", "units", "parameters", "rates", "inputs", "measurement", "block", "piece", "interval", "targets", "ranges",
+)  # fmt: skip
 TABLES = (*SYSTEM, "basis")
 #: Tables of the same file that only ``conventions`` or ``design`` reads, and keys of [model].
 BESIDE = ("card", "code", "roles", "quantities", "known", "measured", "noises", "design")
@@ -287,7 +290,7 @@ def read_model(path: str | os.PathLike[str], values: Mapping[str, Any] | None = 
 def model_from(document: Table, where: str = "", values: Mapping[str, Any] | None = None) -> ModelFile | BasisFile:
     """Like :func:`read_model` for a document in memory, with the same errors."""
     declared, place = document.get("parameters"), join_place(where, "parameters")
-    document = write_out(document, where)
+    source, document = document, write_out(document, where)
     parameters = {
         name: replace(parameter, unit=declared_unit(name, declared))
         for name, parameter in read_parameters(as_table(document.get("parameters", {}), place), place).items()
@@ -299,7 +302,10 @@ def model_from(document: Table, where: str = "", values: Mapping[str, Any] | Non
     if "model" not in document:
         expect_keys(document, TABLES, where)
         raise EmptyError("expected a [model] or a [basis]; got neither; add one", where=where)
-    return read_system(document, where, free, known)
+    found = read_system(document, where, free, known)
+    if not values:
+        require_meaning(source, document, where)
+    return found
 
 
 def read_values(values: Mapping[str, Any], parameters: Mapping[str, Parameter]) -> dict[str, Expr]:
@@ -445,6 +451,7 @@ def read_ranges(
 ) -> dict[str, tuple[Expr, Expr]]:
     """The [ranges] table: what the inputs of exported code may be; two exact numbers for each."""
     place, names = join_place(where, "ranges"), (*states, *parameters, STEP)
+    units = {n: u if isinstance(u, Mapping) else {"unit": u} for n, u in document.get("units", {}).items()}
     found = {}
     for name, value in as_table(document.get("ranges", {}), place).items():
         here = join_place(place, name)
@@ -453,7 +460,8 @@ def read_ranges(
             raise UnknownSymbolError(
                 f"expected a state, a parameter or dt; got {quote(name)}; correct it: {hint}", where=here
             )
-        low, high = read_range(value, here, parameters[name].unit if name in parameters else "")
+        unit = parameters[name].unit if name in parameters else declared_unit(name, units)
+        low, high = read_range(value, here, unit)
         if name == STEP:
             require_positive(low, "the least step", here)
         found[name] = (low, high)

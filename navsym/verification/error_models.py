@@ -25,6 +25,7 @@ from navsym.language.schema import as_list, as_table, require_key
 from navsym.language.tomlfile import read_toml
 from navsym.language.tree import NUMBER, ONE, POWER, PRODUCT, SUM, SYMBOL, ZERO, Tree, build, build_symbol, fold_tree
 from navsym.models.blocks import write_out
+from navsym.models.meaning import require_meaning
 
 if TYPE_CHECKING:
     from navsym.audit.names import Names
@@ -89,8 +90,11 @@ def conventions(
         raise DomainError(message, where="conventions: model")
     document = {**model, **given}
     code = read_code(document, folder, where) if "code" in document else None
-    document = code.document if code else linearise(write_out(read_entries(document, where), where), where)
+    source = code.document if code else read_entries(document, where)
+    written = code.document if code else write_out(source, where)
+    document = code.document if code else linearise(written, where)
     problem = read_problem(fill_model(document, where) if "card" in document else document, where)
+    require_meaning(source, written, where)
     require_known(problem, join_place(where, "known"))
     answer = find_conventions(problem)
     words = as_table(document.get("card", {}), where).items()
