@@ -225,7 +225,7 @@ class Reader(SourceReader):
         is_plain = field_of(node, "declarator").type == "function_declarator" and field_of(node, "type") is not None
         is_second = field_of(node, "declarator").type in SECONDS
         is_second &= all(text_of(child) != "const" for child in named(node))
-        number = number_of(self.type_of(node)) if is_plain else SECOND if is_second else "auto"
+        number = number_of(self.type_of(node)) if is_plain else SECOND if is_second else ""
         whole = start + self.block(body)
         if self.directives & {n.type for n in descend(node) if not n.is_named} - IDLE:
             whole = (self.part("jump", node, "a macro in the place of a word of the language", ()),)

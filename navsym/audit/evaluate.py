@@ -55,6 +55,7 @@ TRUTHS = ("compare", "both", "either", "not")
 JOINS = {f"{module}.{name}": name for module in ("np", "numpy") for name in "hstack vstack concatenate block".split()}
 KINDS: dict[str, type[Array]] = {"quaternion": Quaternion, "list": List}
 INLINED = 12
+LETTERS = ("x", "y", "z", "w", "i", "j", "k")
 UNDECIDED = "which stands under a condition of the preprocessor that is not decided"
 
 #: Source spelling of an input -> its symbol.
@@ -447,6 +448,7 @@ class Evaluator:
         while value is not None and value.kind == "address":
             value = value.parts[0]
         value = value.parts[0] if value is not None and value.kind == "first" else value  # *p
+        value = self.entry_of(value) if value is not None else None
         if value is not None and value.kind == "name":
             return self.variable(value.parts[0])
         if value is not None and value.kind in ("index", "call", "method"):
@@ -549,6 +551,8 @@ class Evaluator:
             self.outputs = [self.whole_value(frame[output], part.line) for output in function.outputs]
             returned = self.outputs[0]
         forbid(returned is None and wants_value, f"{name} returns no value")
+        is_lazy = self.unit.language == "cpp" and function.number == "auto" and isinstance(returned, Array)
+        forbid(is_lazy, f"{name}, whose auto may be an expression that is computed when it is used")
         return convert(returned, function.number, part.line) if returned is not None else Unread(part.line, "no value")
 
     def require_no_structure(self, function: Function, arguments: tuple[Part, ...]) -> None:
@@ -574,9 +578,11 @@ class Evaluator:
     def bind(self, argument: Argument, given: Part, function: Function) -> Variable:
         """A parameter of an inlined function: the caller's own variable, or a copy of a value."""
         inner, changed = given.parts[0] if given.kind == "address" else given, changed_in(self.unit, function).changed
-        is_number = argument.shared and self.unit.language == "cpp" and argument.number == "real"
-        if is_number and given is inner and self.kind_of(inner) in LIMITS:
-            argument = replace(argument, shared=False)  # const double & is a copy of an integer
+        inner = self.entry_of(inner)
+        is_number = argument.shared and argument.number != "other" and argument.name not in changed
+        is_copied = is_number and given.kind != "address" and self.is_copied(argument.name, inner)
+        if is_copied:
+            argument = replace(argument, shared=False)
         is_open = self.unit.language == "cpp" and argument.number == "other" and not argument.shared
         forbid(is_open and argument.name in changed, f"what {function.name} may change, or a copy of it")
         if inner.kind == "name" and (argument.shared or given.kind == "address" or argument.shape is not None):
@@ -597,8 +603,9 @@ class Evaluator:
                 raise Unreadable(f"a part of an array that {function.name} may change", given.line)
             if not sides and self.unit.language != "python":
                 return self.linked(inner)
+        is_python, is_open = self.unit.language == "python", argument.number in ("auto", "other")
         is_alias = given.kind in ("method", "call", "choose") and is_view(self.unit, given) and given.parts[1] != "copy"
-        if self.unit.language == "python" and is_alias and argument.name in changed:
+        if is_python and is_alias and argument.name in changed:
             raise Unreadable(f"a view of an array that {function.name} may change", given.line)
         value = self.value(given)
         if argument.number == "auto" and any(isinstance(c, Scalar) and c.number in LIMITS for c in cells_of(value)):
@@ -609,9 +616,26 @@ class Evaluator:
             variable.all_unread = value
             return variable
         self.write(variable, value, given)
-        if self.unit.language == "python" and variable.shape and (is_place or is_alias):
+        is_row = is_place and not any(side.kind == "slice" for side in walk(inner))  # of C, whose name is a pointer
+        if is_copied and not variable.shape:
+            share(variable, [self.linked(inner)])
+        elif variable.shape and (
+            is_place or is_alias if is_python else self.unit.rules.integer and (is_row or is_open)
+        ):
             share(variable, self.arrays_in(sources_of(given)))
         return variable
+
+    def is_copied(self, name: str, value: Part) -> bool:
+        """True where a reference to a constant number of C++ may be a copy: its type is not that of the number."""
+        if self.unit.language != "cpp" or value.kind not in ("name", "index", "call"):
+            return False
+        try:
+            variable, places, shape = self.targets(value)
+        except Unreadable:
+            return False
+        own, other = (self.unit.kinds.get(re.split(r"->|\.", n)[-1], set()) for n in (name, variable.name))
+        pair = {*map(number_type, own | other)}
+        return not shape and len(places) == 1 and len(pair - {"auto"}) != 1 and pair != {"auto"}
 
     def method(self, part: Part) -> Value:
         """``M.transpose()`` and the like; an accessor without arguments is a name."""
@@ -635,6 +659,14 @@ class Evaluator:
             return None
         return Part("method", part.line, (Part("name", part.line, (base,), part.span), field, ()), part.span)
 
+    def entry_of(self, part: Part) -> Part:
+        """``v.x`` and ``v.x()`` of a vector as an entry, which may have another name; else the part itself."""
+        member = self.member_of_array(part) or part
+        is_one = member is not part or (member.kind == "method" and not member.parts[2] and member.parts[1] in LETTERS)
+        if is_one and member.parts[0].kind == "name" and self.variable_shape(member.parts[0].parts[0]):
+            return self.component(member)
+        return part
+
     def component(self, part: Part) -> Part:
         """``v.x()`` of a vector of two or three as an entry."""
         base, name, arguments = part.parts
@@ -650,9 +682,21 @@ class Evaluator:
 
     def variable_shape(self, name: str) -> Index | None:
         """The shape of a name that is known already."""
+        known = self.find(name)
+        return known.shape if known else self.shapes.get(self.canonical(name))
+
+    def find(self, name: str) -> Variable | None:
+        """What a name stands for that is known already."""
         name = self.canonical(name)
-        known = self.frame.get(name) or self.file_names.get(name) or self.globals.get(name)
-        return known.shape if known else self.shapes.get(name)
+        return self.frame.get(name) or self.file_names.get(name) or self.globals.get(name)
+
+
+def number_type(text: str) -> str:
+    """The type of the numbers in a matrix of Eigen, which has one for each size; other types as they are."""
+    found = re.fullmatch(
+        r"(?:\w+::)*(?:Row)?(?:Matrix|Vector|Quaternion)\w*?(?:([fd])|<(\w+)\b.*>)", text.replace(" ", "")
+    )
+    return text if found is None else found[2] or {"f": "float", "d": "double"}[found[1]]
 
 
 class CellView(dict[Index, Cell]):

@@ -184,6 +184,11 @@ def walk(*parts: Any) -> Iterator[Part]:
             waiting.extend(current)
 
 
+def sides_of(part: Part) -> list[Part]:
+    """The parts directly in one, also those in a list."""
+    return [p for x in part.parts for p in (x if isinstance(x, tuple) else (x,)) if isinstance(p, Part)]
+
+
 def names_in(*parts: Any) -> set[str]:
     """The names that parts read or write."""
     return {inner.parts[0] for inner in walk(*parts) if inner.kind == "name"}

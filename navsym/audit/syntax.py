@@ -250,6 +250,8 @@ class SourceReader:
         """A statement; a wrong one is not read, and neither is one outside the language of audit."""
         if node.has_error and node.type not in self.OPEN:
             return (self.unread(node, "a syntax error, or a macro that hides one"),)
+        if any(side is not None and side.is_missing for side in (node.prev_sibling, node.next_sibling)):
+            return (self.unread(node, "statements without a sign between them, as the grammar takes this line"),)
         several: tuple[Part, ...] | None = self.read_statement(node)
         several = self.read_common(node) if several is None else several
         is_read = any(part.kind not in ("unread", "jump", "fail") for part in several)
