@@ -9,14 +9,26 @@ from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from typing import Any, ClassVar
 
-from navsym.audit.cases import Condition, Reading
+from navsym.audit.cases import Condition, Order, Reading
 from navsym.audit.form import SECOND, Argument, Function, Part, Unit, head_of, names_in, spell_entry, walk
-from navsym.audit.functions import CONSTANTS, KNOWN, NAMED_CALLS, call_known, extreme_of, is_known, is_method, is_view
+from navsym.audit.functions import (
+    CONSTANTS,
+    JOINS,
+    KNOWN,
+    NAMED_CALLS,
+    call_known,
+    extreme_of,
+    is_known,
+    is_method,
+    is_view,
+    join_named,
+)
 from navsym.audit.values import (
     CUT,
     LIMITS,
     Array,
     Cell,
+    CellView,
     Index,
     List,
     Quaternion,
@@ -41,6 +53,7 @@ from navsym.audit.values import (
     join,
     map_cells,
     minus,
+    number_type,
     places_of,
     promote,
     require_fit,
@@ -52,7 +65,6 @@ from navsym.audit.writes import changed_in, owners_in, sources_of
 from navsym.language.tree import Tree, build_call, build_number
 
 TRUTHS = ("compare", "both", "either", "not")
-JOINS = {f"{module}.{name}": name for module in ("np", "numpy") for name in "hstack vstack concatenate block".split()}
 KINDS: dict[str, type[Array]] = {"quaternion": Quaternion, "list": List}
 INLINED = 12
 LETTERS = ("x", "y", "z", "w", "i", "j", "k")
@@ -90,6 +102,7 @@ class Evaluator:
     ended   : the names of blocks that have ended
     seconds : pointers and references to what is not known
     moved   : pointers that were set again -> the names that they may lead to now, None for any
+    order   : of what is read and written that others may know
     outputs : what the last function of MATLAB that was read returned
     """
 
@@ -124,6 +137,7 @@ class Evaluator:
     outputs: list[Value] = field(default_factory=list)
     seconds: list[Variable] = field(default_factory=list)
     moved: dict[str, tuple[str, ...] | None] = field(default_factory=dict)
+    order: Order = field(default_factory=Order)
 
     @property
     def unit(self) -> Unit:
@@ -174,6 +188,8 @@ class Evaluator:
         """One cell."""
         if variable.all_unread is not None:
             return variable.all_unread
+        if variable.is_input:
+            self.order.note(variable, self.unit.language, self.reading.apart)
         if place in variable.cells:
             return variable.cells[place]
         if variable.is_input:
@@ -181,6 +197,8 @@ class Evaluator:
             if variable.shape is None:  # a number or an array from now on
                 variable.shape = () if not place else None
                 variable.cells[place] = cell
+                if not place and not self.unit.rules.integer:
+                    self.reading.scalars.add(variable.name)
             return cell
         return Unset(line, f"{spell_entry(self.unit, variable.name, place)} has no value there")
 
@@ -334,8 +352,6 @@ class Evaluator:
     def named_value(self, part: Part) -> Value:
         """The value of a name: of a variable, a macro or a constant such as pi."""
         name = self.canonical(part.parts[0])
-        if name not in self.frame and self.is_property(name):
-            return self.inline(Part("call", part.line, (name.removeprefix("self."), ()), part.span), True)
         if self.unit.language == "matlab" and name not in self.frame and name in self.unit.functions:
             return self.inline(Part("call", part.line, (name, ()), part.span), True)
         forbid(name not in self.frame and not self.unit.knows(name, part), f"{name}, {UNDECIDED}")
@@ -351,10 +367,6 @@ class Evaluator:
         if variable.number == "other" and not variable.shape and variable.all_unread is None:
             raise Unreadable(f"{name} as a whole, of a type that is no number")
         return self.whole_value(variable, part.line)
-
-    def is_property(self, name: str) -> bool:
-        """True for a member of Python that is a function of the file."""
-        return self.unit.language == "python" and name.removeprefix("self.") in self.unit.functions and "." in name
 
     def macro(self, name: str) -> Value:
         """An object-like macro in its place."""
@@ -487,15 +499,7 @@ class Evaluator:
         items = part.parts[0]
         if name == "block" and items and all(item.kind == "list" for item in items):
             return join(*(self.join_arrays("row", item) for item in items), across=False)
-        values = [self.value(item) for item in items]
-        sizes = {len(value.shape) if isinstance(value, Array) else 0 for value in values}
-        if sizes == {1} and name in ("hstack", "concatenate"):
-            cells = tuple(c for value in values for c in cells_of(value))
-            return Array((len(cells),), cells)
-        known = {"row": {0, 1, 2}, "vstack": {1, 2}, "hstack": {2}, "concatenate": {2}}.get(name, set())
-        forbid(not sizes <= known, f"{name} of arrays of different shapes")
-        rows = [Array((1, *v.shape), v.cells) if isinstance(v, Array) and len(v.shape) == 1 else v for v in values]
-        return join(*rows, across=name in ("hstack", "row"))
+        return join_named(name, [self.value(item) for item in items])
 
     def extreme(self, part: Part, sign: str) -> Value:
         """The larger or the smaller of two numbers, as cases."""
@@ -519,7 +523,7 @@ class Evaluator:
     def inline(self, part: Part, wants_value: bool) -> Value:
         """The body of a function of the file, on its arguments."""
         name, arguments = part.parts
-        candidates = [f for f in self.unit.functions[name] if len(f.arguments) == len(arguments)]
+        candidates = [f for f in self.unit.functions[name] if f.takes(len(arguments))]
         near = [f for f in candidates if f.region is None or f.region[0] <= part.span[0] < f.region[1]]
         forbid(candidates and not near, f"{name}, {UNDECIDED}")
         candidates = near
@@ -527,6 +531,11 @@ class Evaluator:
         if name in self.calls or len(self.calls) >= INLINED:
             raise Unreadable(f"the recursion of {name}" if name in self.calls else "calls nested too deep")
         function = candidates[0]
+        forbid(len(function.arguments) != len(arguments), f"{name} without an argument that has a value of its own")
+        if (why := self.unit.virtual.get(name)) is not None:
+            forbid(why, f"{name}, in whose place another function may stand ({why})")
+            self.reading.kept.add(name)
+        self.reading.functions.add(function)
         forbid(function.number == SECOND, f"{name}, which gives another name of something")
         forbid(any(a.name.startswith("*") for a in function.arguments), f"{name} of any number of arguments")
         self.require_no_structure(function, arguments)
@@ -689,28 +698,3 @@ class Evaluator:
         """What a name stands for that is known already."""
         name = self.canonical(name)
         return self.frame.get(name) or self.file_names.get(name) or self.globals.get(name)
-
-
-def number_type(text: str) -> str:
-    """The type of the numbers in a matrix of Eigen, which has one for each size; other types as they are."""
-    found = re.fullmatch(
-        r"(?:\w+::)*(?:Row)?(?:Matrix|Vector|Quaternion)\w*?(?:([fd])|<(\w+)\b.*>)", text.replace(" ", "")
-    )
-    return text if found is None else found[2] or {"f": "float", "d": "double"}[found[1]]
-
-
-class CellView(dict[Index, Cell]):
-    """The one cell of a reference, which lives in another variable."""
-
-    def __init__(self, base: Variable, place: Index):
-        super().__init__()
-        self.base, self.where = base, place
-
-    def __getitem__(self, _: Index) -> Cell:
-        return self.base.all_unread if self.base.all_unread is not None else self.base.cells[self.where]
-
-    def __setitem__(self, _: Index, cell: Cell) -> None:
-        self.base.cells[self.where] = cell
-
-    def __contains__(self, _: object) -> bool:
-        return True

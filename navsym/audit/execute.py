@@ -10,8 +10,8 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
-from navsym.audit.cases import CASES, Case, Condition, Reading, is_contradictory, list_cases
-from navsym.audit.evaluate import CellView, Edits, Evaluator, Failing, Inputs, Returning
+from navsym.audit.cases import CASES, Case, Condition, Order, Reading, is_contradictory, list_cases
+from navsym.audit.evaluate import Edits, Evaluator, Failing, Inputs, Returning
 from navsym.audit.form import Argument, Function, Part, Unit, called_in, head_of, mentioned_in, names_in, sides_of, walk
 from navsym.audit.functions import HARMLESS, IN_PLACE, PURE, is_view
 from navsym.audit.values import (
@@ -20,6 +20,7 @@ from navsym.audit.values import (
     LIMITS,
     Array,
     Cell,
+    CellView,
     Index,
     List,
     Quaternion,
@@ -114,6 +115,9 @@ class Machine(Evaluator):
         for name in {name for name in once if once.count(name) > 1}:
             self.frame[name].all_unread = Unread(function.line, f"{name}, which has several values in this file")
         self.file_names, self.frame = self.frame, {}
+        shared = frozenset(argument.name for argument in function.arguments if argument.shared)
+        self.order = Order(frozenset(argument.name for argument in function.arguments) - shared, shared)
+        self.reading.functions.add(function)
         for argument in function.arguments:
             self.frame[argument.name] = self.make_argument(argument)
         for name in function.outputs:
@@ -446,7 +450,6 @@ class Machine(Evaluator):
         In Python two names share one array, and a slice is a view: a later write leaves the other one unread.
         """
         is_python, name = self.unit.language == "python", self.canonical(name)
-        forbid(self.is_property(name), f"{name}, which a function of the file may set")
         self.rename_object(name, value, statement)
         if is_python and value.kind == "name" and isinstance(result, Array):
             self.frame[name] = self.variable(value.parts[0])
@@ -506,6 +509,8 @@ class Machine(Evaluator):
             number = "real" if number in ("quaternion", "auto") else number
             cell = Scalar(cell.tree, number, statement.line, statement)
         variable.cells[place] = cell
+        if variable.is_input:
+            self.order.note(variable, self.unit.language, self.reading.apart, is_write=True)
         owner = self.frame.get(head_of(variable.name), variable)
         if owner is not variable and owner.views:
             lose(owner, Unread(statement.line, "a member of what may be another name"))

@@ -28,6 +28,7 @@ from navsym.audit.values import (
     forbid,
     identity_array,
     invert,
+    join,
     make_array,
     map_cell,
     map_cells,
@@ -155,6 +156,18 @@ def call_known(name: str, values: Sequence[Value], unit: Unit) -> Value:
         if len(sides) == 2:
             return identity_array(*sides) if found[4] == "Identity" else filled(sides, 0)
     raise Unreadable(f"the function {name} with {len(values)} arguments")
+
+
+def join_named(name: str, values: Sequence[Value]) -> Value:
+    """``np.hstack([a, b])`` and its like; a vector is a row of a matrix, and is joined with vectors to one."""
+    sizes = {len(value.shape) if isinstance(value, Array) else 0 for value in values}
+    if sizes == {1} and name in ("hstack", "concatenate"):
+        cells = tuple(c for value in values for c in cells_of(value))
+        return Array((len(cells),), cells)
+    known = {"row": {0, 1, 2}, "vstack": {1, 2}, "hstack": {2}, "concatenate": {2}}.get(name, set())
+    forbid(not sizes <= known, f"{name} of arrays of different shapes")
+    rows = [Array((1, *v.shape), v.cells) if isinstance(v, Array) and len(v.shape) == 1 else v for v in values]
+    return join(*rows, across=name in ("hstack", "row"))
 
 
 # Each takes the source, and the values to which it is applied; a method is applied to what stands before it.
@@ -310,6 +323,7 @@ def as_another(unit: Unit, value: Value) -> Value:
     return value
 
 
+JOINS = {f"{module}.{name}": name for module in ("np", "numpy") for name in "hstack vstack concatenate block".split()}
 PLAIN = "sin cos tan exp log sqrt asin acos atan sinh cosh tanh".split()
 ALL, ARRAYS, NALGEBRA, OTHERS = "c cpp python matlab rust", "python matlab", "cpp rust", "c cpp matlab rust"
 Row = tuple[str, tuple[int, ...], str, str, Known]
