@@ -15,7 +15,7 @@ from navsym.audit.form import spell_alike, spell_entry
 from navsym.audit.meaning import list_meaningless
 from navsym.audit.mend import Budget, suggest
 from navsym.audit.names import Names
-from navsym.audit.questions import SENSES, Entry, Question, list_entries, read_question
+from navsym.audit.questions import SENSES, Entry, Question, is_used, list_entries, read_question
 from navsym.audit.senses import weaken
 from navsym.audit.sources import Source, find_function, load_unit, read_source
 from navsym.audit.values import Array, Cell, Scalar, Unread, cells_of, places_of
@@ -96,12 +96,14 @@ class AuditedQuestion:
     """A question with the verdicts on its entries; its own is the worst of them.
 
     inputs : symbol -> how the source spells it, and its declaration; in the order of the function's arguments
+    assumptions : what the answer takes for granted of the code, such as ``taken as real: T``
     """
 
     name: str
     kind: str
     entries: tuple[AuditedEntry, ...]
     inputs: Mapping[str, tuple[str, Any]] = field(default_factory=dict)
+    assumptions: tuple[str, ...] = ()
 
     @property
     def status(self) -> Status:
@@ -128,7 +130,8 @@ class AuditedQuestion:
     def document(self, every: bool = False) -> dict[str, Any]:
         """The question as plain data; entries that are PROVED only on demand, ``weaker`` only where there is one."""
         entries = [entry.document() for entry in self.entries if every or entry.status != PROVED]
-        return {**named(self, "name kind status sense" + " weaker" * bool(self.weaker)), "entries": entries}
+        known = {**named(self, "name kind status sense" + " weaker" * bool(self.weaker)), "entries": entries}
+        return {**known, "assumptions": [*self.assumptions]}
 
 
 @dataclass(frozen=True, slots=True)
@@ -152,12 +155,14 @@ class Audit(Answer):
     files     : what was read of each source
     questions : the verdicts
     formulas  : the outputs of a function, where no question was asked
+    assumptions : what the answer takes for granted of the code
     meaningless : place and reason of every formula that the declared units and frames do not allow
     """
 
     files: tuple[AuditedFile, ...]
     questions: tuple[AuditedQuestion, ...] = ()
     formulas: tuple[OutputFormula, ...] = ()
+    assumptions: tuple[str, ...] = ()
     meaningless: tuple[tuple[str, str], ...] = ()
 
     @property
@@ -180,12 +185,14 @@ class Audit(Answer):
         found: list[tuple[str, tuple[str, ...], list[Any]]] = [
             ("", ("file", "language", "statements read"), files),
             ("", ("not read", "because"), refused),
+            ("", ("taken for granted",), [(t,) for t in self.assumptions if not self.questions]),
             ("", ("output", "line", "formula", "case"), outputs),
             ("", ("meaningless", "because"), [*self.meaningless]),
         ]
         for q in self.questions:
             title = f"{q.name} ({q.kind}): {q.status}, {sum(e.status.holds for e in q.entries)} of {len(q.entries)}"
             title += f" entries proved, {q.sense}" if q.status.holds else " entries proved"
+            title += f"; {'; '.join(q.assumptions)}" if q.assumptions else ""
             shown = ((e, Path(e.file).name) for e in q.entries if every or not e.status.holds)
             rows = [(f"{e.entry[0]},{e.entry[1]}", f"{f}:{e.line}", str(e.status), e.remark()) for e, f in shown]
             found.append((title, ("entry", "place", "verdict", "remark"), rows))
@@ -219,6 +226,7 @@ class Audit(Answer):
         document["questions"] = [question.document(every) for question in self.questions]
         if self.meaningless:
             document["meaningless"] = [{"place": place, "why": why} for place, why in self.meaningless]
+        document["assumptions"] = [*self.assumptions]
         return {**document, "formulas": [f.document() for f in self.formulas]} if self.formulas else document
 
 
@@ -247,8 +255,8 @@ def audit(path: str | os.PathLike[str], /, function: str | None = None) -> Audit
     if function is not None:
         unit = load_unit(where)
         source = Source("code", unit, find_function(unit, function, "audit: function"), Names(), {}, frozenset(), ())
-        source.read()
-        return Audit(describe_files([source]), (), tuple(list_formulas(source)))
+        formulas = tuple(list_formulas(source))
+        return Audit(describe_files([source]), (), formulas, tuple(source.assumptions()))
     if where.suffix != ".toml":
         message = f"expected a specification (TOML), or a source with the name of a function; got {quote(where.name)}; "
         raise ExpressionSyntaxError(f"{message}add --function NAME", where="audit")
@@ -268,7 +276,9 @@ def audit_specification(path: Path, only: str | None = None) -> Audit:
     noted = names.units or names.frames
     entries = [entry for question in chosen for entry in list_entries(question)] if noted else []
     meaningless = list_meaningless(names, [*by_name.values()], entries)
-    return Audit(describe_files([*by_name.values()]), tuple(map(answer_question, chosen)), meaningless=(*meaningless,))
+    answered = tuple(map(answer_question, chosen))
+    assumptions = dict.fromkeys(text for question in answered for text in question.assumptions)
+    return Audit(describe_files([*by_name.values()]), answered, (), tuple(assumptions), (*meaningless,))
 
 
 def read_sources(document: Mapping[str, Any], folder: Path, where: str) -> tuple[Names, dict[str, Source]]:
@@ -325,7 +335,9 @@ def answer_question(question: Question) -> AuditedQuestion:
         answer = write_answer(question, entry, scope, decision, budget)
         if (known := worst.get(entry.place)) is None or order.index(answer.status) > order.index(known.status):
             worst[entry.place] = answer
-    return AuditedQuestion(question.name, question.kind, tuple(worst.values()), question.inputs())
+    several = (s.assumptions() for s in question.sources.values() if is_used(s.name, question.keys))
+    taken = tuple(dict.fromkeys(text for texts in several for text in texts))
+    return AuditedQuestion(question.name, question.kind, tuple(worst.values()), question.inputs(), taken)
 
 
 def decide_cells(entry: Entry, scope: Scope, decided: dict[Any, Decision]) -> Decision:

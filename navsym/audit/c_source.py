@@ -18,27 +18,31 @@ from navsym.audit.form import (
     walk,
 )
 from navsym.audit.functions import METHODS
-from navsym.audit.preprocessor import WAYS, drop_ways, region_of
+from navsym.audit.preprocessor import (
+    DECLARING,
+    MADE,
+    drop_ways,
+    head_of_function,
+    list_types,
+    list_variables,
+    region_of,
+    scope_of,
+)
 from navsym.audit.syntax import SourceReader, ascend, descend, field_of, identifiers_in, list_above, named, text_of
 from navsym.audit.values import LIMITS, whole_kind
 
-REAL = frozenset("float double real_t ftype Scalar scalar_t Real postype_t T float32_t float64_t f32 f64".split())
+#: Types of which the custom says that they are real, and what the language says.
+OPEN = frozenset("real_t ftype Scalar scalar_t Real postype_t T".split())
+REAL = OPEN | {*"float double float32_t float64_t f32 f64".split()}
+VIRTUAL = re.compile(r"\b(virtual|override|_*weak_*)\b", re.IGNORECASE)
 WHOLE = re.compile(r"(unsigned |signed )*(u?int\d+(_t)?|int|long|short|char|size_t|bool|unsigned|Eigen::Index)( int)?")
 VECTOR = re.compile(r"(?:\w+::)*(?:(?:Sparse)?Vector([2-9]|[1-5]\d)[fd]?(?:<[\w, ]+>)?|Vector<\w+,(\d+)>)")
 MATRIX = re.compile(
     r"(?:\w+::)*(?:(?:Square)?Matrix([2-9]|[1-5]\d)[fd]?(?:<\w+>)?|Dcm[fd]?|Dcm<\w+>|SquareMatrix<\w+,(\d+)>|Matrix<\w+,(\d+),(\d+)>)"
 )
-NAMED = ("preproc_def", "enumerator")
-#: What gives a class a meaning of its own, and how a type is called whose objects do something when they are made.
-ACTIVE, MADE = ("operator_name", "base_class_clause"), "an object of the file"
 #: Words that a macro may stand for, and nothing is read that was not there.
 IDLE = frozenset("inline const static register restrict volatile".split())
 ODD = ("union_specifier", "bitfield_clause")  # whose members share their place, or hold less than their type
-SCOPES = ("namespace_definition", "struct_specifier", "class_specifier")
-DECLARING = (
-    "init_declarator declaration parameter_declaration array_declarator pointer_declarator reference_declarator "
-    "field_declaration"
-).split()
 ROUNDS = 6  # in which names are told from types; a cast that is left is refused
 DYNAMIC = re.compile(r"(?:Eigen::)?(?:Matrix|Vector)X[fd]")  # whose size is that of its value
 #: Of Eigen, whose coefficients are x, y, z, w; other libraries have other orders.
@@ -76,12 +80,14 @@ class Reader(SourceReader):
     pointers, arrays : those of them that are pointers or arrays, and arrays
     scopes : name of a function -> the namespaces and classes in which the file defines it
     opened : classes and namespaces whose names are taken elsewhere, too
+    spaces : the namespaces of the file
     directives : the names of macros
     nodes      : of the tree
     hidden : first byte of a name that stands in the tree as a number, since the grammar would take it for a type
     """
 
     HEAD = "int a_ = "
+    REALS = OPEN
     OPEN = (*SourceReader.OPEN, "while_statement", "do_statement", "switch_statement", "compound_statement")
 
     locals: set[str] = field(default_factory=set)
@@ -92,6 +98,7 @@ class Reader(SourceReader):
     hidden: dict[int, str] = field(default_factory=dict)
     scopes: dict[str, set[tuple[str, ...]]] = field(default_factory=dict)
     opened: set[str] = field(default_factory=set)
+    spaces: set[str] = field(default_factory=set)
 
     def parse(self, source: bytes) -> Any:
         """The tree of a source in which no variable is taken for a type, as ``b`` is in ``a*(b) - c``."""
@@ -145,6 +152,9 @@ class Reader(SourceReader):
                     self.scopes.setdefault(name, set()).add(scope_of(node))
             elif node.type in ("base_class_clause", "using_declaration"):
                 self.opened |= {*re.findall(r"\w+", text_of(node))}
+        self.spaces = {text_of(field_of(n, "name")) for n in self.nodes if n.type == "namespace_definition"}
+        for node in (node for node in self.nodes if node.type == "function_declarator"):
+            self.read_head(node)
         for node in self.nodes:
             if node.type == "function_definition":
                 self.read_function(node)
@@ -166,6 +176,17 @@ class Reader(SourceReader):
                     self.read_field(node)
         self.unit.constants.sort(key=lambda statement: statement.span)
         self.unit.macros |= dict.fromkeys(others & self.directives, "a macro, and a name of something else as well")
+
+    def read_head(self, node: Any) -> None:
+        """Note a function in whose place another one may stand when the program runs."""
+        outer = next((n for n in ascend(node) if n.type.endswith(("declaration", "function_definition"))), node)
+        *around, name = re.findall(r"\w+", re.sub(r"<[^>]*>", "", text_of(field_of(node, "declarator")))) or [""]
+        body = field_of(outer, "body")
+        head = outer.text[: None if body is None else body.start_byte - outer.start_byte].decode("utf-8", "replace")
+        if (word := VIRTUAL.search(head)) and "final" not in head:
+            self.unit.virtual[name] = word[0].strip("_").lower()
+        elif around and body is not None and around[-1] not in {*self.unit.types, *self.spaces}:
+            self.unit.virtual.setdefault(name, "")
 
     def read_field(self, node: Any) -> None:
         """A member of a structure, or a variable of the file; one name with two types is left open."""
@@ -225,7 +246,7 @@ class Reader(SourceReader):
         is_plain = field_of(node, "declarator").type == "function_declarator" and field_of(node, "type") is not None
         is_second = field_of(node, "declarator").type in SECONDS
         is_second &= all(text_of(child) != "const" for child in named(node))
-        number = number_of(self.type_of(node)) if is_plain else SECOND if is_second else "auto"
+        number = number_of(self.type_of(node)) if is_plain else SECOND if is_second else ""
         whole = start + self.block(body)
         if self.directives & {n.type for n in descend(node) if not n.is_named} - IDLE:
             whole = (self.part("jump", node, "a macro in the place of a word of the language", ()),)
@@ -242,8 +263,9 @@ class Reader(SourceReader):
         name, sizes, shared = self.declared(inner)
         if inner is not None and any(n.type == "function_declarator" for n in descend(inner)):  # it is only called
             return Argument(next((text_of(n) for n in descend(inner) if n.type == "identifier"), ""), "other", ())
+        is_spare = node.type.startswith("optional")
         shape = sizes or self.sizes(node, shape_of_type(kind))
-        return Argument(name, "auto" if kind in types else number_of(kind), shape, shared)
+        return Argument(name, "auto" if kind in types else number_of(kind), shape, shared, is_spare)
 
     def type_of(self, node: Any) -> str:
         """The type of a declaration, with names of types that the file defines replaced."""
@@ -256,6 +278,7 @@ class Reader(SourceReader):
         for child in node.children_by_field_name("declarator"):
             if name := re.search(r"[A-Za-z_]\w*", text_of(child)):
                 self.unit.kinds.setdefault(name[0], set()).add(text)
+                self.take(node, text, name[0])
         return text
 
     def declared(self, node: Any) -> tuple[str, tuple[Part, ...] | None, bool]:
@@ -535,6 +558,7 @@ class Reader(SourceReader):
             return self.part("method", node, base, method, arguments)
         name = re.sub(r"\s", "", text_of(function))
         if function.type == "primitive_type" or (name in REAL and len(arguments) == 1):
+            self.take(node, name)
             kind = number_of(self.unit.types.get(name, name) if name not in self.directives else "a macro")
             is_known = arguments and kind in (*LIMITS, "real")
             return self.part("cast", node, kind, arguments[0]) if is_known else self.refuse(node, "a cast")
@@ -545,6 +569,7 @@ class Reader(SourceReader):
         if name.endswith("::Identity") and QUATERNION.fullmatch(name.removesuffix("::Identity")):
             return self.part("call", node, "Quaternion::identity", ())
         if shape_of_type(name) is not None:
+            self.take(node, name)
             is_copy = len(arguments) == 1  # of a matrix
             return self.part("method", node, *arguments, "eval", ()) if is_copy else self.part("list", node, arguments)
         if found := re.fullmatch(r"\(\*(\w+)\)", name):  # (*M)(i, j)
@@ -603,14 +628,6 @@ class Reader(SourceReader):
         return self.part("slice", node, *((self.part("minus", node, size), None) if is_last else (None, size)))
 
 
-def head_of_function(node: Any) -> Any:
-    """The name of a function with its parameters; None where there is none."""
-    head = field_of(node, "declarator")
-    while head is not None and head.type != "function_declarator":
-        head = field_of(head, "declarator") or next(iter(named(head)), None)
-    return head
-
-
 def is_second(node: Any) -> bool:
     """True for a declaration of pointers and references only."""
     inner = (field_of(child, "declarator") or child for child in node.children_by_field_name("declarator"))
@@ -621,51 +638,6 @@ def is_constant(node: Any) -> bool:
     """True for the declaration of a constant outside of functions."""
     is_const = any(text_of(child) in ("const", "constexpr") for child in node.children)
     return node.type == "declaration" and is_const and "function_definition" not in list_above(node)
-
-
-def scope_of(node: Any) -> tuple[str, ...]:
-    """The namespaces and classes around a node, those before the name of the function among them."""
-    names = list[str]()
-    for above in (node, *ascend(node)):
-        text = text_of(field_of(above, "name")) if above.type in SCOPES else ""
-        if above.type == "function_definition":
-            text = text_of(field_of(head_of_function(above), "declarator")).rpartition("::")[0]
-        names[:0] = re.findall(r"\w+", re.sub(r"<.*>", "", text))
-    return tuple(names)
-
-
-def list_types(nodes: list[Any]) -> dict[str, str]:
-    """What names of types stand for that a source defines; nothing is known of two meanings, or in an ``#if``."""
-    types: dict[str, str] = {}
-    templates = (node for node in nodes if node.type.endswith("type_parameter_declaration"))
-    open_types = {text_of(inner) for node in templates for inner in named(node)}
-    for node in nodes:
-        if node.type in ("struct_specifier", "class_specifier") and (body := field_of(node, "body")) is not None:
-            name = text_of(field_of(node, "name"))
-            heads = {text_of(field_of(n, "declarator")) for n in descend(body) if n.type == "function_declarator"}
-            is_made = heads & {name, f"~{name}"} or any(n.type in ACTIVE for n in descend(node))
-            types[name] = MADE if is_made else "own"
-        if node.type in ("type_definition", "alias_declaration"):
-            name = field_of(node, "declarator") or field_of(node, "name")
-            is_plain = name.type == "type_identifier"
-            meaning = text_of(field_of(node, "type")) if is_plain else "pointer"
-            name = next((n for n in descend(name) if n.type == "type_identifier"), name)
-            meaning = meaning if not {*WAYS} & {*list_above(node)} else "several types"
-            if meaning not in open_types and not re.search(rf"\b{text_of(name)}\b", meaning):
-                types[text_of(name)] = meaning if types.get(text_of(name), meaning) == meaning else "several types"
-    return types
-
-
-def list_variables(nodes: list[Any]) -> set[str]:
-    """The names of a source that are declared or defined as values, and never as types."""
-    values, types = set[str](), set[str]()
-    for node in nodes:
-        name = node if node.type == "identifier" else field_of(node, "name") if node.type in NAMED else None
-        if name is not None and node.parent is not None and (node.type in NAMED or node.parent.type in DECLARING):
-            values.add(text_of(name))
-        elif node.type.endswith(("_specifier", "type_definition", "alias_declaration")):
-            types |= {text_of(child) for child in node.children if child.type == "type_identifier"}
-    return values - types
 
 
 def list_commas(node: Any) -> list[Any]:

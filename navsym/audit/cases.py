@@ -10,13 +10,14 @@ from typing import Any
 
 from flint import fmpq
 
-from navsym.audit.form import Function, Unit
-from navsym.audit.values import COMPARE, Index, Value, Variable
+from navsym.audit.form import Function, Unit, head_of
+from navsym.audit.values import COMPARE, LIMITS, Index, Value, Variable
 from navsym.core.errors import DomainError, TooLargeError
 from navsym.language.polynomials import to_polynomial
 from navsym.language.tree import NUMBER, Tree, build_sum, list_names, list_parts, negate
 
 CASES = 32
+SHARING = ("c", "cpp", "python")  # where two names may be of one array or number
 LONGEST = 200  # parts of a condition that is brought into one form
 NEGATED = {"<": ">=", ">=": "<", ">": "<=", "<=": ">", "==": "!=", "!=": "=="}
 TURNED = {"<": ">", ">": "<", "<=": ">=", ">=": "<="}
@@ -32,6 +33,32 @@ class Condition:
     sign: str = ""
     left: Tree | None = None
     right: Tree | None = None
+
+
+@dataclass(slots=True, eq=False)
+class Order:
+    """Which parameters and members are written before others are read or written: these must not be the same.
+
+    copies  : parameters that nobody else knows
+    given   : those that the caller may know by other names
+    written : names that have been written, and whether they hold integers
+    """
+
+    copies: frozenset[str] = frozenset()
+    given: frozenset[str] = frozenset()
+    written: dict[str, bool] = field(default_factory=dict)
+
+    def note(self, variable: Variable, language: str, apart: set[frozenset[str]], *, is_write: bool = False) -> None:
+        """One more cell that is read or written; a name in capitals is a constant by custom."""
+        own, is_whole = head_of(variable.name), variable.number in LIMITS
+        is_number = language == "python" and not variable.shape
+        if own in self.copies or is_number or language not in SHARING or (own.isupper() and own not in self.given):
+            return
+        for other, kind in self.written.items():
+            if other != own and kind == is_whole and {own, other} & self.given:
+                apart.add(frozenset((own, other)))
+        if is_write:
+            self.written[own] = is_whole
 
 
 @dataclass(slots=True, eq=False)
@@ -60,6 +87,10 @@ class Reading:
     ways      : whether conditions that are not read, and maxima, have two ways
     steps     : of its longest case
     written   : formula, variable and place of everything that is assigned -> its line
+    functions : all that were entered
+    kept      : functions of classes of other files, in whose place none of a derived class is taken to stand
+    scalars   : inputs of Python and MATLAB whose sizes nothing says
+    apart     : names of which one is written before the other is read or written
     """
 
     unit: Unit
@@ -72,6 +103,10 @@ class Reading:
     ways: tuple[bool, bool] = (True, True)
     steps: int = 0
     written: dict[tuple[Tree, str, Index], int] = field(default_factory=dict)
+    functions: set[Function] = field(default_factory=set)
+    kept: set[str] = field(default_factory=set)
+    scalars: set[str] = field(default_factory=set)
+    apart: set[frozenset[str]] = field(default_factory=set)
 
 
 def list_cases(start: Any, reading: Reading, function: Function, is_bold: bool, is_split: bool) -> list[Case]:

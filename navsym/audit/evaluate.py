@@ -9,14 +9,26 @@ from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from typing import Any, ClassVar
 
-from navsym.audit.cases import Condition, Reading
+from navsym.audit.cases import Condition, Order, Reading
 from navsym.audit.form import SECOND, Argument, Function, Part, Unit, head_of, names_in, spell_entry, walk
-from navsym.audit.functions import CONSTANTS, KNOWN, NAMED_CALLS, call_known, extreme_of, is_known, is_method, is_view
+from navsym.audit.functions import (
+    CONSTANTS,
+    JOINS,
+    KNOWN,
+    NAMED_CALLS,
+    call_known,
+    extreme_of,
+    is_known,
+    is_method,
+    is_view,
+    join_named,
+)
 from navsym.audit.values import (
     CUT,
     LIMITS,
     Array,
     Cell,
+    CellView,
     Index,
     List,
     Quaternion,
@@ -41,6 +53,7 @@ from navsym.audit.values import (
     join,
     map_cells,
     minus,
+    number_type,
     places_of,
     promote,
     require_fit,
@@ -52,9 +65,9 @@ from navsym.audit.writes import changed_in, owners_in, sources_of
 from navsym.language.tree import Tree, build_call, build_number
 
 TRUTHS = ("compare", "both", "either", "not")
-JOINS = {f"{module}.{name}": name for module in ("np", "numpy") for name in "hstack vstack concatenate block".split()}
 KINDS: dict[str, type[Array]] = {"quaternion": Quaternion, "list": List}
 INLINED = 12
+LETTERS = ("x", "y", "z", "w", "i", "j", "k")
 UNDECIDED = "which stands under a condition of the preprocessor that is not decided"
 
 #: Source spelling of an input -> its symbol.
@@ -89,6 +102,7 @@ class Evaluator:
     ended   : the names of blocks that have ended
     seconds : pointers and references to what is not known
     moved   : pointers that were set again -> the names that they may lead to now, None for any
+    order   : of what is read and written that others may know
     outputs : what the last function of MATLAB that was read returned
     """
 
@@ -123,6 +137,7 @@ class Evaluator:
     outputs: list[Value] = field(default_factory=list)
     seconds: list[Variable] = field(default_factory=list)
     moved: dict[str, tuple[str, ...] | None] = field(default_factory=dict)
+    order: Order = field(default_factory=Order)
 
     @property
     def unit(self) -> Unit:
@@ -173,6 +188,8 @@ class Evaluator:
         """One cell."""
         if variable.all_unread is not None:
             return variable.all_unread
+        if variable.is_input:
+            self.order.note(variable, self.unit.language, self.reading.apart)
         if place in variable.cells:
             return variable.cells[place]
         if variable.is_input:
@@ -180,6 +197,8 @@ class Evaluator:
             if variable.shape is None:  # a number or an array from now on
                 variable.shape = () if not place else None
                 variable.cells[place] = cell
+                if not place and not self.unit.rules.integer:
+                    self.reading.scalars.add(variable.name)
             return cell
         return Unset(line, f"{spell_entry(self.unit, variable.name, place)} has no value there")
 
@@ -333,8 +352,6 @@ class Evaluator:
     def named_value(self, part: Part) -> Value:
         """The value of a name: of a variable, a macro or a constant such as pi."""
         name = self.canonical(part.parts[0])
-        if name not in self.frame and self.is_property(name):
-            return self.inline(Part("call", part.line, (name.removeprefix("self."), ()), part.span), True)
         if self.unit.language == "matlab" and name not in self.frame and name in self.unit.functions:
             return self.inline(Part("call", part.line, (name, ()), part.span), True)
         forbid(name not in self.frame and not self.unit.knows(name, part), f"{name}, {UNDECIDED}")
@@ -350,10 +367,6 @@ class Evaluator:
         if variable.number == "other" and not variable.shape and variable.all_unread is None:
             raise Unreadable(f"{name} as a whole, of a type that is no number")
         return self.whole_value(variable, part.line)
-
-    def is_property(self, name: str) -> bool:
-        """True for a member of Python that is a function of the file."""
-        return self.unit.language == "python" and name.removeprefix("self.") in self.unit.functions and "." in name
 
     def macro(self, name: str) -> Value:
         """An object-like macro in its place."""
@@ -447,6 +460,7 @@ class Evaluator:
         while value is not None and value.kind == "address":
             value = value.parts[0]
         value = value.parts[0] if value is not None and value.kind == "first" else value  # *p
+        value = self.entry_of(value) if value is not None else None
         if value is not None and value.kind == "name":
             return self.variable(value.parts[0])
         if value is not None and value.kind in ("index", "call", "method"):
@@ -485,15 +499,7 @@ class Evaluator:
         items = part.parts[0]
         if name == "block" and items and all(item.kind == "list" for item in items):
             return join(*(self.join_arrays("row", item) for item in items), across=False)
-        values = [self.value(item) for item in items]
-        sizes = {len(value.shape) if isinstance(value, Array) else 0 for value in values}
-        if sizes == {1} and name in ("hstack", "concatenate"):
-            cells = tuple(c for value in values for c in cells_of(value))
-            return Array((len(cells),), cells)
-        known = {"row": {0, 1, 2}, "vstack": {1, 2}, "hstack": {2}, "concatenate": {2}}.get(name, set())
-        forbid(not sizes <= known, f"{name} of arrays of different shapes")
-        rows = [Array((1, *v.shape), v.cells) if isinstance(v, Array) and len(v.shape) == 1 else v for v in values]
-        return join(*rows, across=name in ("hstack", "row"))
+        return join_named(name, [self.value(item) for item in items])
 
     def extreme(self, part: Part, sign: str) -> Value:
         """The larger or the smaller of two numbers, as cases."""
@@ -517,7 +523,7 @@ class Evaluator:
     def inline(self, part: Part, wants_value: bool) -> Value:
         """The body of a function of the file, on its arguments."""
         name, arguments = part.parts
-        candidates = [f for f in self.unit.functions[name] if len(f.arguments) == len(arguments)]
+        candidates = [f for f in self.unit.functions[name] if f.takes(len(arguments))]
         near = [f for f in candidates if f.region is None or f.region[0] <= part.span[0] < f.region[1]]
         forbid(candidates and not near, f"{name}, {UNDECIDED}")
         candidates = near
@@ -525,6 +531,11 @@ class Evaluator:
         if name in self.calls or len(self.calls) >= INLINED:
             raise Unreadable(f"the recursion of {name}" if name in self.calls else "calls nested too deep")
         function = candidates[0]
+        forbid(len(function.arguments) != len(arguments), f"{name} without an argument that has a value of its own")
+        if (why := self.unit.virtual.get(name)) is not None:
+            forbid(why, f"{name}, in whose place another function may stand ({why})")
+            self.reading.kept.add(name)
+        self.reading.functions.add(function)
         forbid(function.number == SECOND, f"{name}, which gives another name of something")
         forbid(any(a.name.startswith("*") for a in function.arguments), f"{name} of any number of arguments")
         self.require_no_structure(function, arguments)
@@ -549,6 +560,8 @@ class Evaluator:
             self.outputs = [self.whole_value(frame[output], part.line) for output in function.outputs]
             returned = self.outputs[0]
         forbid(returned is None and wants_value, f"{name} returns no value")
+        is_lazy = self.unit.language == "cpp" and function.number == "auto" and isinstance(returned, Array)
+        forbid(is_lazy, f"{name}, whose auto may be an expression that is computed when it is used")
         return convert(returned, function.number, part.line) if returned is not None else Unread(part.line, "no value")
 
     def require_no_structure(self, function: Function, arguments: tuple[Part, ...]) -> None:
@@ -574,9 +587,11 @@ class Evaluator:
     def bind(self, argument: Argument, given: Part, function: Function) -> Variable:
         """A parameter of an inlined function: the caller's own variable, or a copy of a value."""
         inner, changed = given.parts[0] if given.kind == "address" else given, changed_in(self.unit, function).changed
-        is_number = argument.shared and self.unit.language == "cpp" and argument.number == "real"
-        if is_number and given is inner and self.kind_of(inner) in LIMITS:
-            argument = replace(argument, shared=False)  # const double & is a copy of an integer
+        inner = self.entry_of(inner)
+        is_number = argument.shared and argument.number != "other" and argument.name not in changed
+        is_copied = is_number and given.kind != "address" and self.is_copied(argument.name, inner)
+        if is_copied:
+            argument = replace(argument, shared=False)
         is_open = self.unit.language == "cpp" and argument.number == "other" and not argument.shared
         forbid(is_open and argument.name in changed, f"what {function.name} may change, or a copy of it")
         if inner.kind == "name" and (argument.shared or given.kind == "address" or argument.shape is not None):
@@ -597,8 +612,9 @@ class Evaluator:
                 raise Unreadable(f"a part of an array that {function.name} may change", given.line)
             if not sides and self.unit.language != "python":
                 return self.linked(inner)
+        is_python, is_open = self.unit.language == "python", argument.number in ("auto", "other")
         is_alias = given.kind in ("method", "call", "choose") and is_view(self.unit, given) and given.parts[1] != "copy"
-        if self.unit.language == "python" and is_alias and argument.name in changed:
+        if is_python and is_alias and argument.name in changed:
             raise Unreadable(f"a view of an array that {function.name} may change", given.line)
         value = self.value(given)
         if argument.number == "auto" and any(isinstance(c, Scalar) and c.number in LIMITS for c in cells_of(value)):
@@ -609,9 +625,26 @@ class Evaluator:
             variable.all_unread = value
             return variable
         self.write(variable, value, given)
-        if self.unit.language == "python" and variable.shape and (is_place or is_alias):
+        is_row = is_place and not any(side.kind == "slice" for side in walk(inner))  # of C, whose name is a pointer
+        if is_copied and not variable.shape:
+            share(variable, [self.linked(inner)])
+        elif variable.shape and (
+            is_place or is_alias if is_python else self.unit.rules.integer and (is_row or is_open)
+        ):
             share(variable, self.arrays_in(sources_of(given)))
         return variable
+
+    def is_copied(self, name: str, value: Part) -> bool:
+        """True where a reference to a constant number of C++ may be a copy: its type is not that of the number."""
+        if self.unit.language != "cpp" or value.kind not in ("name", "index", "call"):
+            return False
+        try:
+            variable, places, shape = self.targets(value)
+        except Unreadable:
+            return False
+        own, other = (self.unit.kinds.get(re.split(r"->|\.", n)[-1], set()) for n in (name, variable.name))
+        pair = {*map(number_type, own | other)}
+        return not shape and len(places) == 1 and len(pair - {"auto"}) != 1 and pair != {"auto"}
 
     def method(self, part: Part) -> Value:
         """``M.transpose()`` and the like; an accessor without arguments is a name."""
@@ -635,6 +668,14 @@ class Evaluator:
             return None
         return Part("method", part.line, (Part("name", part.line, (base,), part.span), field, ()), part.span)
 
+    def entry_of(self, part: Part) -> Part:
+        """``v.x`` and ``v.x()`` of a vector as an entry, which may have another name; else the part itself."""
+        member = self.member_of_array(part) or part
+        is_one = member is not part or (member.kind == "method" and not member.parts[2] and member.parts[1] in LETTERS)
+        if is_one and member.parts[0].kind == "name" and self.variable_shape(member.parts[0].parts[0]):
+            return self.component(member)
+        return part
+
     def component(self, part: Part) -> Part:
         """``v.x()`` of a vector of two or three as an entry."""
         base, name, arguments = part.parts
@@ -650,23 +691,10 @@ class Evaluator:
 
     def variable_shape(self, name: str) -> Index | None:
         """The shape of a name that is known already."""
+        known = self.find(name)
+        return known.shape if known else self.shapes.get(self.canonical(name))
+
+    def find(self, name: str) -> Variable | None:
+        """What a name stands for that is known already."""
         name = self.canonical(name)
-        known = self.frame.get(name) or self.file_names.get(name) or self.globals.get(name)
-        return known.shape if known else self.shapes.get(name)
-
-
-class CellView(dict[Index, Cell]):
-    """The one cell of a reference, which lives in another variable."""
-
-    def __init__(self, base: Variable, place: Index):
-        super().__init__()
-        self.base, self.where = base, place
-
-    def __getitem__(self, _: Index) -> Cell:
-        return self.base.all_unread if self.base.all_unread is not None else self.base.cells[self.where]
-
-    def __setitem__(self, _: Index, cell: Cell) -> None:
-        self.base.cells[self.where] = cell
-
-    def __contains__(self, _: object) -> bool:
-        return True
+        return self.frame.get(name) or self.file_names.get(name) or self.globals.get(name)

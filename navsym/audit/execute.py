@@ -10,9 +10,9 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, replace
 from typing import Any
 
-from navsym.audit.cases import CASES, Case, Condition, Reading, is_contradictory, list_cases
-from navsym.audit.evaluate import CellView, Edits, Evaluator, Failing, Inputs, Returning
-from navsym.audit.form import Argument, Function, Part, Unit, called_in, head_of, mentioned_in, names_in, walk
+from navsym.audit.cases import CASES, Case, Condition, Order, Reading, is_contradictory, list_cases
+from navsym.audit.evaluate import Edits, Evaluator, Failing, Inputs, Returning
+from navsym.audit.form import Argument, Function, Part, Unit, called_in, head_of, mentioned_in, names_in, sides_of, walk
 from navsym.audit.functions import HARMLESS, IN_PLACE, PURE, is_view
 from navsym.audit.values import (
     COMPARE,
@@ -20,6 +20,7 @@ from navsym.audit.values import (
     LIMITS,
     Array,
     Cell,
+    CellView,
     Index,
     List,
     Quaternion,
@@ -52,6 +53,9 @@ from navsym.language.tree import NUMBER, ZERO, build_number
 
 Body = tuple[Part, ...]
 STEPS = 250_000
+#: Of Eigen, what is computed cell by cell when it is used; another library computes it at once.
+LAZY = ("transpose", "diagonal", "asDiagonal", "cwiseProduct")
+OTHER_LIBRARY = re.compile(rb"\bmatrix(::|/)|AP_Math")
 ROUNDS = 20_000  # of one loop
 #: First two ways for all that is undecided.
 WAYS = ((True, True), (False, True), (False, False))
@@ -111,6 +115,9 @@ class Machine(Evaluator):
         for name in {name for name in once if once.count(name) > 1}:
             self.frame[name].all_unread = Unread(function.line, f"{name}, which has several values in this file")
         self.file_names, self.frame = self.frame, {}
+        shared = frozenset(argument.name for argument in function.arguments if argument.shared)
+        self.order = Order(frozenset(argument.name for argument in function.arguments) - shared, shared)
+        self.reading.functions.add(function)
         for argument in function.arguments:
             self.frame[argument.name] = self.make_argument(argument)
         for name in function.outputs:
@@ -291,7 +298,9 @@ class Machine(Evaluator):
         if self.shadows and name not in self.shadows[-1]:
             self.shadows[-1][name] = self.frame.get(name)
         self.aliases.pop(name, None)
-        if is_link:
+        is_number = is_link == "const" and number != "other" and value is not None
+        copied = self.linked(value) if is_number and self.is_copied(name, value) else None  # type: ignore[arg-type]
+        if is_link and copied is None:
             self.frame[name] = self.linked(value)
             owner = self.owner_of(value) if value is not None and not self.frame[name].shape else None
             if number == "other" and owner is not None:
@@ -327,6 +336,8 @@ class Machine(Evaluator):
         if result is not None:
             self.note_unread(result, statement)
             self.write(variable, self.fill(result, sizes), statement)
+        if copied is not None:
+            share(variable, [copied])
         lazy = ("op", "minus", "method", "index", *(("name",) if self.unit.language == "cpp" else ()))
         if is_lazy and shape is None and sizes and value is not None and value.kind in lazy:
             share(
@@ -355,7 +366,7 @@ class Machine(Evaluator):
         first = self.value(target) if sign and self.unit.language == "python" else None  # read before the right side
         result = self.fill_by_commas(target, value) if sign == "<<" else self.value(value)
         sign = sign.removesuffix("<<")
-        if self.unit.language == "cpp" and b"Eigen" in self.unit.source and self.overlaps(value, target):
+        if self.unit.language == "cpp" and not OTHER_LIBRARY.search(self.unit.source) and self.overlaps(value, target):
             raise Unreadable("a matrix that Eigen changes while a part of it is read; write .eval()")
         if sign:
             before = first or self.value(target)
@@ -385,24 +396,44 @@ class Machine(Evaluator):
             self.write_cell(variable, place, cell, statement)
 
     def overlaps(self, value: Part, target: Part) -> bool:
-        """True for a transpose or a block of the target that is read cell by cell; a product is made before."""
-        if value.kind == "method" and value.parts[1] == "transpose":
-            return bool(names_in(value.parts[0]) & names_in(target))
-        if value.kind == "index" and target.kind == "index" and names_in(value) & names_in(target):
-            (base, places, _), (other, written, _) = self.targets(value), self.targets(target)
-            return base is other and len(places) > 1 and places != written and bool({*places} & {*written})
-        if value.kind not in ("op", "minus"):
+        """True where Eigen writes the target while it reads the same cells in another order."""
+        variable, written, _ = self.targets(target)
+        near = (self.find(name) for name in mentioned_in(value))
+        if len(written) < 2 or not any(v is variable or (v is not None and variable in v.views) for v in near):
             return False
-        sides = [part for part in value.parts if isinstance(part, Part)]
-        if value.parts[0] == "*" and all(isinstance(self.value(side), Array) for side in sides):
-            return False
-        return any(self.overlaps(side, target) for side in sides)
+        is_turned = value.kind == "method" and value.parts[1] == "inverse"
+        return self.is_moved(value, variable, written, is_turned)
+
+    def is_moved(self, part: Part, variable: Variable, written: list[Index], is_turned: bool) -> bool:
+        """True where an expression reads cells of a variable elsewhere than they are written; a product is made before.
+
+        is_turned : what is around the expression changes the order in which it is read
+        """
+        sides = sides_of(part)
+        if part.kind in ("op", "minus", "choose"):
+            is_product = part.parts[0] == "*" and all(isinstance(self.value(side), Array) for side in sides)
+            if is_product and not any(s.kind == "method" and s.parts[1] == "asDiagonal" for s in sides):
+                return False
+        elif part.kind == "method" and part.parts[1] in (*LAZY, *(["inverse"] if is_turned else ())):
+            is_turned |= part.parts[1] != "cwiseProduct"
+        elif part.kind == "call" and any(not f.number for f in self.unit.functions.get(part.parts[0], ())):
+            is_turned = True  # a reference to constants, perhaps to these
+        else:
+            try:
+                base, places, _ = self.targets(part)
+            except Unreadable:
+                return False  # a value of its own
+            is_same = base is variable and bool({*places} & {*written}) and (is_turned or places != written)
+            return len(places) > 1 and (is_same or variable in base.views)
+        return any(self.is_moved(side, variable, written, is_turned) for side in sides)
 
     def fill_by_commas(self, target: Part, value: Part) -> Value:
         """``M << A, b, c`` of Eigen: blocks side by side until a row is full, and then below."""
         *_, shape = self.targets(target)
         forbid(not shape, "<< into what has no known size", value.line)
-        if names_in(target) & {*names_in(value), *(p.parts[0] for p in walk(value) if p.kind == "call")}:
+        filled = self.targets(target)[0]
+        near = [v for v in map(self.find, mentioned_in(value)) if v is not None]
+        if any(filled in (v, getattr(v.cells, "base", None), *v.views) for v in near):
             raise Unreadable("a matrix that is filled with its own entries", value.line)
         rows, blocks = list[list[Value]]([[]]), [*map(self.value, value.parts[0])]
         if (unread := find_unread(*blocks)) is not None:
@@ -419,7 +450,6 @@ class Machine(Evaluator):
         In Python two names share one array, and a slice is a view: a later write leaves the other one unread.
         """
         is_python, name = self.unit.language == "python", self.canonical(name)
-        forbid(self.is_property(name), f"{name}, which a function of the file may set")
         self.rename_object(name, value, statement)
         if is_python and value.kind == "name" and isinstance(result, Array):
             self.frame[name] = self.variable(value.parts[0])
@@ -480,6 +510,8 @@ class Machine(Evaluator):
             cell = Scalar(cell.tree, number, statement.line, statement)
             self.reading.written.setdefault((cell.tree, variable.name, place), statement.line)
         variable.cells[place] = cell
+        if variable.is_input:
+            self.order.note(variable, self.unit.language, self.reading.apart, is_write=True)
         owner = self.frame.get(head_of(variable.name), variable)
         if owner is not variable and owner.views:
             lose(owner, Unread(statement.line, "a member of what may be another name"))

@@ -51,12 +51,14 @@ class Argument:
     number : "real", or a type of integers
     shape  : its sizes, None where the source does not say
     shared : True when the caller sees what is written to it
+    spare  : True where it has a value that a call may leave out
     """
 
     name: str
     number: str = "real"
     shape: tuple[Part, ...] | None = None
     shared: bool = False
+    spare: bool = False
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -66,6 +68,7 @@ class Function:
     outputs : the names that MATLAB returns
     number  : what others return
     region  : the bytes of the source in which it is known, where it is not known in all of it
+    extent  : its own bytes
     """
 
     name: str
@@ -75,6 +78,11 @@ class Function:
     outputs: tuple[str, ...] = ()
     number: str = "auto"
     region: tuple[int, int] | None = None
+    extent: tuple[int, int] = (0, 0)
+
+    def takes(self, count: int) -> bool:
+        """True where it may be called with so many arguments."""
+        return sum(not argument.spare for argument in self.arguments) <= count <= len(self.arguments)
 
 
 @dataclass(frozen=True, slots=True)
@@ -125,6 +133,8 @@ class Unit:
     imported  : what names of numpy and math are called in Python
     effects   : what functions may write, as far as it was asked
     regions   : name that is not known in all of the source -> the bytes in which it is
+    taken     : types that are taken as real, with their first bytes and the names that they are given to
+    virtual   : functions in whose place another one may stand -> why, where the file says so; else nothing
     """
 
     file: str
@@ -146,6 +156,8 @@ class Unit:
     types: dict[str, str] = field(default_factory=dict)
     effects: dict[Function, Any] = field(default_factory=dict)
     regions: dict[str, list[tuple[int, int]]] = field(default_factory=dict)
+    taken: list[tuple[str, int, str]] = field(default_factory=list)
+    virtual: dict[str, str] = field(default_factory=dict)
 
     @property
     def rules(self) -> Rules:
@@ -182,6 +194,11 @@ def walk(*parts: Any) -> Iterator[Part]:
             waiting.extend(current.parts)
         elif isinstance(current, tuple):
             waiting.extend(current)
+
+
+def sides_of(part: Part) -> list[Part]:
+    """The parts directly in one, also those in a list."""
+    return [p for x in part.parts for p in (x if isinstance(x, tuple) else (x,)) if isinstance(p, Part)]
 
 
 def names_in(*parts: Any) -> set[str]:

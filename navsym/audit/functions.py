@@ -28,6 +28,7 @@ from navsym.audit.values import (
     forbid,
     identity_array,
     invert,
+    join,
     make_array,
     map_cell,
     map_cells,
@@ -106,23 +107,33 @@ def does_take(name: str, count: int, language: str) -> bool:
     return is_known(name, language) and (language != "python" or count <= most)
 
 
-def may_return_view(function: Function) -> bool:
+def may_return_view(unit: Unit, function: Function, around: tuple[Function, ...] = ()) -> bool:
     """True for a function of Python that may return what it was given, or a part of it."""
-    fresh = {"op", "minus", "number", "compare", "call", "refused"}
-    parts = [*walk(*function.body)]
-    values = {p.parts[0].parts[0]: p.parts[2] for p in parts if p.kind == "assign" and p.parts[0].kind == "name"}
-    for part in (p.parts[0] for p in parts if p.kind == "return"):
-        value = values.get(part.parts[0]) if part is not None and part.kind == "name" else part
-        if part is not None and (value is None or value.kind not in fresh):
-            return True
-    return False
+    fresh = {"op", "minus", "number", "compare", "refused"}
+    values = dict[str, list[Part]]()
+    for part in walk(*function.body):
+        if part.kind == "assign" and part.parts[0].kind == "name" and not part.parts[1]:
+            values.setdefault(part.parts[0].parts[0], []).append(part.parts[2])
+    given = {argument.name for argument in function.arguments}
+
+    def may_share(value: Part, met: frozenset[str] = frozenset()) -> bool:
+        if value.kind == "name" and value.parts[0] in values.keys() - given - met:
+            name = value.parts[0]
+            return any(may_share(v, met | {name}) for v in values[name])
+        if value.kind == "call":
+            return is_view(unit, value, (*around, function))
+        return value.kind not in fresh
+
+    returned = (p.parts[0] for p in walk(*function.body) if p.kind == "return")
+    return function in around or any(value is not None and may_share(value) for value in returned)
 
 
-def is_view(unit: Unit, value: Part) -> bool:
+def is_view(unit: Unit, value: Part, around: tuple[Function, ...] = ()) -> bool:
     """True for an expression of Python whose value may share cells with an array in it."""
     if value.kind != "call":
         return value.kind in ("index", "method", "choose")
-    return names_view(value.parts[0]) or any(map(may_return_view, unit.functions.get(value.parts[0], [])))
+    functions = unit.functions.get(value.parts[0], [])
+    return names_view(value.parts[0]) or any(may_return_view(unit, function, around) for function in functions)
 
 
 def extreme_of(name: str, language: str) -> str:
@@ -145,6 +156,18 @@ def call_known(name: str, values: Sequence[Value], unit: Unit) -> Value:
         if len(sides) == 2:
             return identity_array(*sides) if found[4] == "Identity" else filled(sides, 0)
     raise Unreadable(f"the function {name} with {len(values)} arguments")
+
+
+def join_named(name: str, values: Sequence[Value]) -> Value:
+    """``np.hstack([a, b])`` and its like; a vector is a row of a matrix, and is joined with vectors to one."""
+    sizes = {len(value.shape) if isinstance(value, Array) else 0 for value in values}
+    if sizes == {1} and name in ("hstack", "concatenate"):
+        cells = tuple(c for value in values for c in cells_of(value))
+        return Array((len(cells),), cells)
+    known = {"row": {0, 1, 2}, "vstack": {1, 2}, "hstack": {2}, "concatenate": {2}}.get(name, set())
+    forbid(not sizes <= known, f"{name} of arrays of different shapes")
+    rows = [Array((1, *v.shape), v.cells) if isinstance(v, Array) and len(v.shape) == 1 else v for v in values]
+    return join(*rows, across=name in ("hstack", "row"))
 
 
 # Each takes the source, and the values to which it is applied; a method is applied to what stands before it.
@@ -300,6 +323,7 @@ def as_another(unit: Unit, value: Value) -> Value:
     return value
 
 
+JOINS = {f"{module}.{name}": name for module in ("np", "numpy") for name in "hstack vstack concatenate block".split()}
 PLAIN = "sin cos tan exp log sqrt asin acos atan sinh cosh tanh".split()
 ALL, ARRAYS, NALGEBRA, OTHERS = "c cpp python matlab rust", "python matlab", "cpp rust", "c cpp matlab rust"
 Row = tuple[str, tuple[int, ...], str, str, Known]

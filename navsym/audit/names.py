@@ -30,6 +30,7 @@ class Names:
     spellings    : name of a symbol -> how the source writes it
     declarations : name of a symbol -> its declaration, as in [symbols]
     inputs       : names that no source assigns, which an expression may hold though no source reads them
+    declared     : names of symbols that a mapping declares
     rotations    : matrices that are rotations, with the names of their nine symbols row by row
     units, frames : squeezed spelling of an input, or of an array of them -> its declared unit or frame
     """
@@ -39,6 +40,7 @@ class Names:
     declarations: dict[str, Any] = field(default_factory=dict)
     written: dict[str, Any] = field(default_factory=dict)
     inputs: set[str] = field(default_factory=set)
+    declared: set[str] = field(default_factory=set)
     rotations: dict[str, tuple[str, ...]] = field(default_factory=dict)
     units: dict[str, str] = field(default_factory=dict)
     frames: dict[str, str] = field(default_factory=dict)
@@ -82,6 +84,7 @@ class Names:
             message = f"expected one declaration of {quote(name)}; got two different ones; make them equal"
             raise DuplicateError(message, where=where)
         self.declarations[name] = declaration
+        self.declared.add(name)
         self.symbols[key] = name
         self.spellings.setdefault(name, spelling)
 

@@ -1,4 +1,4 @@
-"""What the preprocessor of C surely leaves out, and where a name is known that only some of its ways define."""
+"""Where the names of C are known: what the preprocessor surely leaves out, in which scope a name stands, as what."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ import re
 from typing import Any
 
 from navsym.audit.form import Unit
-from navsym.audit.syntax import ascend, field_of
+from navsym.audit.syntax import ascend, descend, field_of, list_above, named, text_of
 
 WAYS = ("preproc_if", "preproc_ifdef", "preproc_elif", "preproc_elifdef", "preproc_else")
 #: Comments and texts, what is no blank, and the lines of the preprocessor.
@@ -16,6 +16,15 @@ BLACK = re.compile(rb"[^\s]")
 DIRECTIVE = re.compile(
     rb"(?<!\\\n)(?<!\\\r\n)^[ \t]*#[ \t]*((?:el)?if(?:n?def)?|else|endif|define|undef)\b([^\n]*)", re.MULTILINE
 )
+
+NAMED = ("preproc_def", "enumerator")
+#: What gives a class a meaning of its own, and how a type is called whose objects do something when they are made.
+ACTIVE, MADE = ("operator_name", "base_class_clause"), "an object of the file"
+SCOPES = ("namespace_definition", "struct_specifier", "class_specifier")
+DECLARING = (
+    "init_declarator declaration parameter_declaration array_declarator pointer_declarator reference_declarator "
+    "field_declaration"
+).split()
 
 
 def region_of(node: Any) -> tuple[int, int] | None:
@@ -77,3 +86,56 @@ def drop_ways(source: bytes, unit: Unit) -> bytes:
         elif old == "off":  # the first way of which nothing is known
             text[slice(*found.span(1))] = found[1].removeprefix(b"el").rjust(len(word))
     return bytes(text)
+
+
+def head_of_function(node: Any) -> Any:
+    """The name of a function with its parameters; None where there is none."""
+    head = field_of(node, "declarator")
+    while head is not None and head.type != "function_declarator":
+        head = field_of(head, "declarator") or next(iter(named(head)), None)
+    return head
+
+
+def scope_of(node: Any) -> tuple[str, ...]:
+    """The namespaces and classes around a node, those before the name of the function among them."""
+    names = list[str]()
+    for above in (node, *ascend(node)):
+        text = text_of(field_of(above, "name")) if above.type in SCOPES else ""
+        if above.type == "function_definition":
+            text = text_of(field_of(head_of_function(above), "declarator")).rpartition("::")[0]
+        names[:0] = re.findall(r"\w+", re.sub(r"<.*>", "", text))
+    return tuple(names)
+
+
+def list_types(nodes: list[Any]) -> dict[str, str]:
+    """What names of types stand for that a source defines; nothing is known of two meanings, or in an ``#if``."""
+    types: dict[str, str] = {}
+    templates = (node for node in nodes if node.type.endswith("type_parameter_declaration"))
+    open_types = {text_of(inner) for node in templates for inner in named(node)}
+    for node in nodes:
+        if node.type in ("struct_specifier", "class_specifier") and (body := field_of(node, "body")) is not None:
+            name = text_of(field_of(node, "name"))
+            heads = {text_of(field_of(n, "declarator")) for n in descend(body) if n.type == "function_declarator"}
+            is_made = heads & {name, f"~{name}"} or any(n.type in ACTIVE for n in descend(node))
+            types[name] = MADE if is_made else "own"
+        if node.type in ("type_definition", "alias_declaration"):
+            name = field_of(node, "declarator") or field_of(node, "name")
+            is_plain = name.type == "type_identifier"
+            meaning = text_of(field_of(node, "type")) if is_plain else "pointer"
+            name = next((n for n in descend(name) if n.type == "type_identifier"), name)
+            meaning = meaning if not {*WAYS} & {*list_above(node)} else "several types"
+            if meaning not in open_types and not re.search(rf"\b{text_of(name)}\b", meaning):
+                types[text_of(name)] = meaning if types.get(text_of(name), meaning) == meaning else "several types"
+    return types
+
+
+def list_variables(nodes: list[Any]) -> set[str]:
+    """The names of a source that are declared or defined as values, and never as types."""
+    values, types = set[str](), set[str]()
+    for node in nodes:
+        name = node if node.type == "identifier" else field_of(node, "name") if node.type in NAMED else None
+        if name is not None and node.parent is not None and (node.type in NAMED or node.parent.type in DECLARING):
+            values.add(text_of(name))
+        elif node.type.endswith(("_specifier", "type_definition", "alias_declaration")):
+            types |= {text_of(child) for child in node.children if child.type == "type_identifier"}
+    return values - types

@@ -49,6 +49,7 @@ class Reader(SourceReader):
     changed : names outside of functions that hold more than their one value
     given   : names whose arrays get another name, or go to what may write to them
     free, methods : the functions of the file, outside of classes and in them
+    computed : members that a class of the file computes when they are read or set; ANY where it may be every one
     """
 
     HEAD, TAIL = "(", ")"
@@ -61,6 +62,7 @@ class Reader(SourceReader):
     times: Counter[str] = field(default_factory=Counter)
     star: int = -1
     made: set[str] = field(default_factory=set)
+    computed: set[str] = field(default_factory=set)
     OPERATORS = OPERATORS | {sign: ("op", sign) for sign in ("//", "@", "**")}
 
     @staticmethod
@@ -106,6 +108,8 @@ class Reader(SourceReader):
             is_local, is_import = "function_definition" in above, node.type.startswith("import")
             if node.type == "function_definition":
                 (self.methods if "class_definition" in above else self.free).add(names[0])
+            elif node.type == "class_definition":
+                self.read_members(node)
             scope = next((kind for kind in above if kind in ("function_definition", "class_definition")), "")
             if not scope or (scope == "function_definition" and node.type not in FOLLOWED):
                 self.times.update(names)  # what a function binds otherwise may stand for anything there
@@ -114,6 +118,26 @@ class Reader(SourceReader):
                 self.rebound |= {*names} & {*NAMES, *self.unit.imported, *CONSTANTS}
             self.made |= {*(() if is_import else names)}
         self.rebound |= {name for name in self.unit.imported if self.times[name] > 1}
+
+    def read_members(self, node: Any) -> None:
+        """Note the members of a class that are no plain values: properties, descriptors, and what no class lists."""
+        for child in named(field_of(node, "body")):
+            inner = field_of(child, "definition") or child
+            name, value = text_of(field_of(inner, "name")), (named(inner) or [None])[0]
+            if name in ("__getattr__", "__getattribute__", "__setattr__"):
+                self.computed.add(ANY)
+            elif inner is not child and not re.search(r"@(staticmethod|classmethod)\b", text_of(child)):
+                self.computed.add(name)
+            elif value is not None and value.type == "assignment" and field_of(value, "right") is not None:
+                made = field_of(field_of(value, "right"), "function")
+                is_plain = made is None or bare_name(text_of(made)) == "field" or is_known(text_of(made), "python")
+                self.computed |= {*(() if is_plain else bound_by(value))}
+
+    def is_computed(self, node: Any) -> bool:
+        """True for a member, or one of a member, that a class of the file computes."""
+        head, *members = re.findall(r"\w+", text_of(node))
+        is_module = head in NAMES or head in self.unit.imported
+        return bool(self.computed & {*members, ANY}) and not is_module
 
     def is_lasting(self, name: str, node: Any) -> bool:
         """True for a name of the module that stands for one thing from its definition on."""
@@ -152,7 +176,8 @@ class Reader(SourceReader):
     def read_function(self, node: Any, decorator: Any = None) -> None:
         """A function; one whose decorator may change it is not read."""
         name = text_of(field_of(node, "name"))
-        arguments = [Argument(name_parameter(child), shared=True) for child in named(field_of(node, "parameters"))]
+        given = named(field_of(node, "parameters"))
+        arguments = [Argument(name_parameter(n), shared=True, spare="default" in n.type) for n in given]
         body = self.block(field_of(node, "body"))
         if decorator is not None:
             body = (self.part("jump", decorator, "a decorator that may change the function", ()),)
@@ -254,6 +279,11 @@ class Reader(SourceReader):
                 text_of(node) in CONSTANTS and text_of(node).split(".")[0] in self.rebound
             ):
                 return self.refuse(node, f"{text_of(node)}, which this file uses for something else")
+            case "attribute" if self.is_computed(node):
+                name = text_of(field_of(node, "attribute"))
+                if text_of(node) == f"self.{name}" and ANY not in self.computed and self.has_method(node, name):
+                    return self.part("call", node, name, ())
+                return self.refuse(node, f"{text_of(node)}, which a class of this file may compute")
             case "attribute" if text_of(field_of(node, "attribute")) == "T":
                 return self.part("method", node, self.expression(field_of(node, "object")), "T", ())
             case "call":

@@ -10,7 +10,8 @@ from navsym.audit.form import Argument, Part, names_in
 from navsym.audit.syntax import SourceReader, ascend, descend, field_of, identifiers_in, list_above, named, text_of
 from navsym.audit.values import whole_kind
 
-REAL = ("f32", "f64", "N", "T", "R", "Real", "Self")
+OPEN_TYPES = frozenset(("N", "T", "R", "Real"))
+REAL = ("f32", "f64", "Self", *OPEN_TYPES)
 WHOLE = re.compile(r"[iu](8|16|32|64|128|size)|bool")
 VECTOR = re.compile(r"(?:\w+::)*(?:S?Vector(\d)(?:<\w+>)?|SVector<\w+,(\d+)>|Point([23])<\w+>)")
 MATRIX = re.compile(r"(?:\w+::)*(?:Matrix(\d)(?:x(\d))?(?:<\w+>)?|SMatrix<\w+,(\d+),(\d+)>)")
@@ -64,6 +65,7 @@ class Reader(SourceReader):
     """
 
     HEAD = "const A: f64 = "
+    REALS = OPEN_TYPES
     OPEN = ("if_expression", "for_expression", "block", "expression_statement")
 
     own: set[str] = field(default_factory=set)
@@ -112,6 +114,7 @@ class Reader(SourceReader):
                 self.unit.constants.append(self.part("declare", node, *what, value, False))
             elif node.type == "field_declaration":  # of two structures that have it differently it stays unknown
                 name, known = f"self.{text_of(field_of(node, 'name'))}", self.type_of(text_of(field_of(node, "type")))
+                self.take(node, text_of(field_of(node, "type")), name)
                 self.unit.members[name] = known if self.unit.members.get(name, known) == known else ("other", None)
         self.unit.constants.sort(key=lambda statement: statement.span)
 
@@ -137,8 +140,10 @@ class Reader(SourceReader):
             kind = text_of(field_of(child, "type"))
             number, shape = self.type_of(kind)
             label = text_of(field_of(child, "pattern")).removeprefix("mut ")
+            self.take(child, kind)
             number = "auto" if {*re.findall(r"\w+", kind)} & types and number == "real" else number
             arguments.append(Argument(label, number, self.sizes(child, shape), "&mut" in kind.replace(" ", "")))
+        self.take(node, text_of(field_of(node, "return_type")))
         self.define(node, name, arguments, tuple(self.body(field_of(node, "body"))))
 
     def body(self, node: Any) -> list[Part]:
@@ -209,6 +214,7 @@ class Reader(SourceReader):
         pattern, given, value = (field_of(node, key) for key in ("pattern", "type", "value"))
         if (other := field_of(node, "alternative")) is not None:
             return self.normalized_or_left(node, text_of(pattern), value, other)
+        self.take(node, text_of(given))
         number, shape = self.type_of(text_of(given)) if given is not None else ("auto", None)
         if pattern.type == "tuple_pattern" and value is not None and value.type == "tuple_expression":
             names = [text_of(child).removeprefix("mut ") for child in named(pattern)]

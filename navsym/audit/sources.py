@@ -40,7 +40,7 @@ BITS = 256  # at which a decimal is compared with what it stands for
 #: The keys of a block ``[[code]]``.
 KEYS = (
     "name", "file", "function", "lines", "also", "defined", "relations", "approximations", "symbols", "constants",
-    "functions", "ignored", "language",
+    "functions", "ignored", "language", "distinct",
 )  # fmt: skip
 
 
@@ -53,6 +53,7 @@ class Source:
     relations : polynomials of the inputs that are zero
     starts    : spelling of an entry -> the number that it holds at the beginning
     approximations : what may be put for what in the sense of that name
+    distinct : parameters that share no memory with anything else
     """
 
     name: str
@@ -66,6 +67,26 @@ class Source:
     mirrored: dict[str, str] | None = None
     starts: Mapping[str, Tree] = field(default_factory=dict)
     approximations: tuple[tuple[Tree, Tree], ...] = ()
+    distinct: frozenset[str] = frozenset()
+
+    def assumptions(self) -> list[str]:
+        """What is taken for granted of the code, and neither the file nor the mapping says."""
+        reading, unit = self.read(), self.unit
+        names = {name.split(".")[-1] for f in reading.functions for name in names_in(*f.body)}
+        extents = [f.extent for f in reading.functions]
+        near = (
+            (word, any(a <= at < b for a, b in extents) or name.split(".")[-1] in names)
+            for word, at, name in unit.taken
+        )
+        apart = {name for pair in reading.apart if not pair & self.distinct for name in pair}
+        scalars = reading.scalars - {self.names.spellings.get(n, n) for n in self.names.declared}
+        several = {
+            "taken as real: ": {word for word, is_near in near if is_near},
+            "sizes: scalar: ": scalars,
+            "apart in memory: ": apart,
+            "not overridden: ": reading.kept,
+        }
+        return [head + ", ".join(sorted(words)) for head, words in several.items() if words]
 
     def symbol(self, spelling: str) -> Tree:
         """The symbol of an input; of a symmetric matrix that of the upper half."""
@@ -198,7 +219,8 @@ def read_source(block: Any, folder: Path, names: Names, where: str, line: int | 
         if isinstance(declaration, dict) and read_start(declaration, join_place(place, spelling))
         for p in places_of(shapes[spelling])
     }
-    source = Source(name, unit, function, names, shapes, symmetric, (), starts=starts)
+    distinct = frozenset(read_names(table, "distinct", where) or ())
+    source = Source(name, unit, function, names, shapes, symmetric, (), starts=starts, distinct=distinct)
     names.inputs |= list_inputs(source, whole)
     relations, approximations = (read_equations(table, key, names, where) for key in ("relations", "approximations"))
     source.relations = tuple(build_sum(left, negate(right)) for left, right in relations)

@@ -224,6 +224,7 @@ class SourceReader:
     OPEN: ClassVar[tuple[str, ...]] = ("if_statement", "for_statement")
     OPERATORS: ClassVar[dict[str, tuple[str, ...]]] = OPERATORS
     UNARY: ClassVar[dict[str, str]] = UNARY
+    REALS: ClassVar[frozenset[str]] = frozenset()
 
     read_statement: ClassVar[Any]
     read_expression: ClassVar[Any]
@@ -275,8 +276,11 @@ class SourceReader:
         return self.unread(node, f"a statement outside the language of audit ({node.type.replace('_', ' ')})")
 
     def block(self, node: Any) -> tuple[Part, ...]:
-        """The statements of a body."""
-        return tuple(s for child in named(node) for s in self.statement(child))
+        """The statements of a body; the grammar may take one for two, without a sign between them."""
+        lost = {line_of(child) for child in (node.children if node is not None else ()) if child.is_missing}
+        odd = [child for child in named(node) if lost & {line_of(child), child.end_point[0] + 1}]
+        parts = {child.id: self.unread(child, "a line that the grammar takes for two statements") for child in odd}
+        return tuple(s for c in named(node) for s in ((parts[c.id],) if c.id in parts else self.statement(c)))
 
     def expression(self, node: Any) -> Part:
         """An expression; a wrong or missing one is refused, and so is one outside the language of audit."""
@@ -320,9 +324,15 @@ class SourceReader:
 
     def define(self, node: Any, name: str, arguments: Iterable[Argument], body: tuple[Part, ...], *more: Any) -> None:
         """One more function of the file."""
-        number = more[1] if len(more) > 1 else "auto"
-        function = Function(name, line_of(node), tuple(arguments), body, (*more, ())[0], number, self.region_of(node))
+        number, extent = more[1] if len(more) > 1 else "auto", (node.start_byte, node.end_byte)
+        outputs, region = (*more, ())[0], self.region_of(node)
+        function = Function(name, line_of(node), tuple(arguments), body, outputs, number, region, extent)
         self.unit.functions.setdefault(name, []).append(function)
+
+    def take(self, node: Any, text: str, name: str = "") -> None:
+        """Note the types in a text that are taken as real though the file does not say what they are."""
+        words = self.REALS & {*re.findall(r"\w+", text)} - self.unit.types.keys()
+        self.unit.taken += [(word, node.start_byte, name) for word in words if not self.shift]
 
     def several(self, nodes: Iterable[Any]) -> tuple[Part, ...]:
         """Expressions one by one."""

@@ -5,6 +5,7 @@ from __future__ import annotations
 import functools
 import math
 import operator
+import re
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
@@ -161,6 +162,23 @@ class Variable:
     is_input: bool = False
     all_unread: Unread | None = None
     views: list[Variable] = field(default_factory=list)
+
+
+class CellView(dict[Index, Cell]):
+    """The one cell of a reference, which lives in another variable."""
+
+    def __init__(self, base: Variable, place: Index):
+        super().__init__()
+        self.base, self.where = base, place
+
+    def __getitem__(self, _: Index) -> Cell:
+        return self.base.all_unread if self.base.all_unread is not None else self.base.cells[self.where]
+
+    def __setitem__(self, _: Index, cell: Cell) -> None:
+        self.base.cells[self.where] = cell
+
+    def __contains__(self, _: object) -> bool:
+        return True
 
 
 def lose(variable: Variable, unread: Unread) -> None:
@@ -423,6 +441,14 @@ def whole_kind(text: str) -> str:
         return "bool"
     is_unsigned = text.startswith(("u", "size_t"))
     return f"{'u' * is_unsigned}int{bits}" if bits else "unsigned" if is_unsigned else "int"
+
+
+def number_type(text: str) -> str:
+    """The type of the numbers in a matrix of Eigen, which has one for each size; other types as they are."""
+    found = re.fullmatch(
+        r"(?:\w+::)*(?:Row)?(?:Matrix|Vector|Quaternion)\w*?(?:([fd])|<(\w+)\b.*>)", text.replace(" ", "")
+    )
+    return text if found is None else found[2] or {"f": "float", "d": "double"}[found[1]]
 
 
 def promote(kind: str) -> str:

@@ -10,7 +10,18 @@ import re
 from collections.abc import Container, Iterator
 from dataclasses import dataclass
 
-from navsym.audit.form import HIDDEN_MACROS, Function, Part, Unit, called_in, head_of, mentioned_in, names_in, walk
+from navsym.audit.form import (
+    HIDDEN_MACROS,
+    Function,
+    Part,
+    Unit,
+    called_in,
+    head_of,
+    mentioned_in,
+    names_in,
+    sides_of,
+    walk,
+)
 from navsym.audit.functions import CONSTANTS, HARMLESS, PURE, does_take, extreme_of, is_known, is_method, is_view
 
 
@@ -213,8 +224,8 @@ def find_race(unit: Unit, parts: tuple[Part, ...], local: set[str], fixed: set[s
     writing = {name for name in own if any(written_outside(unit, function) for function in unit.functions[name])}
     for node in (Part("list", 0, parts), *walk(*parts)) if writing else ():
         kinds = ("op", "compare", "call", "method", "index", "list")
-        sides = [p for x in node.parts for p in (x if isinstance(x, tuple) else (x,)) if isinstance(p, Part)]
-        for side in sides if node.kind in kinds else ():
+        sides = sides_of(node) if node.kind in kinds else []
+        for side in sides:
             given = [mentioned_in(*p.parts[1]) for p in walk(side) if p.kind == "call" and p.parts[0] in writing]
             rest = mentioned_in(*(other for other in sides if other is not side)) if given else set()
             rest -= fixed | {*unit.macros, *CONSTANTS}
