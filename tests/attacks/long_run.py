@@ -1,4 +1,4 @@
-"""The long attack: statements on each construct, decided in this process, the constructs by equal shares of time.
+"""The long attack: statements on each construct, decided in this process, by shares of time.
 
 ``python -m tests.attacks.long_run SEED SECONDS OUT`` appends to OUT a line for each statement that is not decided, and
 at the end a line with the counts by construct. ``python -m tests.attacks.long_run table OUT...`` adds them up.
@@ -31,8 +31,8 @@ SCHEMES: dict[str, Scheme] = {
 
 OUTCOMES = ("decided", "confirmed", "open", "refused", "false confirmed", "wrong")
 SECONDS = 4.0
-#: A statement costs its construct this much beside its own time, so that quick constructs do not take all turns.
-FEE = 0.001
+#: A construct whose statements take longer than SLOW seconds has a quarter of the time of the others.
+SLOW = 0.1
 
 
 class Late(BaseException):
@@ -81,12 +81,12 @@ def run(seed: int, seconds: float, out: Path, schemes: Mapping[str, Scheme] = SC
     with out.open("a", encoding="utf-8") as log:
         try:
             while time.monotonic() < start + seconds:
-                name = min(spent, key=spent.__getitem__)
+                name = min(spent, key=lambda n: spent[n] * (1 if spent[n] <= SLOW * counts[n].total() else 4))
                 number, before = counts[name].total(), time.process_time()
                 statement = draw(name, seed, number, schemes)
                 found, why = outcome_here(statement)
                 counts[name][found] += 1
-                spent[name] += FEE + time.process_time() - before
+                spent[name] += time.process_time() - before
                 if found != "decided":
                     row = {"found": found, "name": name, "seed": seed, "number": number, "text": statement.text}
                     row |= {"given": statement.given, "truth": statement.truth, "why": why[:300]}
@@ -108,7 +108,7 @@ def make_table(paths: Sequence[Path]) -> str:
                 counts.setdefault(name, Counter()).update(outcomes)
     rows = []
     for name in sorted(counts):
-        each = 1000 * (spent[name] / max(1, counts[name].total()) - FEE)
+        each = 1000 * spent[name] / max(1, counts[name].total())
         rows.append([name.replace("_", " "), counts[name].total(), *(counts[name][o] for o in OUTCOMES), round(each)])
     rows.append(["all", *(sum(row[k] for row in rows) for k in range(1, len(OUTCOMES) + 2)), ""])
     lines = [f"| construct | asked | {' | '.join(OUTCOMES)} | ms |", "| --- |" + " ---: |" * (len(OUTCOMES) + 2)]
