@@ -49,11 +49,16 @@ def make_construct(number: int, seed: int, schemes: Mapping[str, Scheme] = SCHEM
     """The statement of a number; the constructs take turns."""
     names = sorted(schemes)
     name = names[number % len(names)]
-    statement = schemes[name](random.Random(f"constructs {seed} {number}"))
-    texts = " ".join([statement.text, *statement.given.get("given", [])])
-    words = {"given", "order", "tolerance", *re.findall(r"[A-Za-z]\w*", texts)}
+    return name, keep_used(schemes[name](random.Random(f"constructs {seed} {number}")))
+
+
+def keep_used(statement: Construct) -> Construct:
+    """The statement with the declarations of the names that occur in it."""
+    rates = statement.given.get("rates", {})
+    texts = " ".join([statement.text, *statement.given.get("given", []), *rates, *rates.values()])
+    words = {"given", "order", "tolerance", "rates", *re.findall(r"[A-Za-z]\w*", texts)}
     used = {key: value for key, value in statement.given.items() if key in words}
-    return name, replace(statement, given=used)
+    return replace(statement, given=used)
 
 
 def outcome_of(statement: Construct, seconds: float = SECONDS) -> tuple[str, str]:
@@ -64,12 +69,16 @@ def outcome_of(statement: Construct, seconds: float = SECONDS) -> tuple[str, str
         return "refused", str(error)
     except Exception as error:
         return "wrong", repr(error)
+    return judge_status(verdict, statement.truth)
+
+
+def judge_status(verdict: nav.Verdict, truth: bool) -> tuple[str, str]:
+    """The outcome of a verdict on a statement of known truth, and what was said."""
     status = str(verdict.status)
     if status in ("OPEN", "CONFIRMED"):
-        found = "open" if status == "OPEN" else "confirmed" if statement.truth else "false confirmed"
-        return found, verdict.evidence
+        return "open" if status == "OPEN" else "confirmed" if truth else "false confirmed", verdict.evidence
     holds = status in ("PROVED", "CERTIFIED")
-    return ("decided" if holds == statement.truth else "wrong"), f"{status} {dict(verdict.counterexample or {})}"
+    return ("decided" if holds == truth else "wrong"), f"{status} {dict(verdict.counterexample or {})}"
 
 
 def main(count: int, seed: int, schemes: Mapping[str, Scheme] = SCHEMES) -> None:

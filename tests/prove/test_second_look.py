@@ -27,6 +27,8 @@ NEAR_MISSES = (
 )
 
 FALSE_BOUNDS = (
+    Bound(4 * a**2 - 12 * a * b + sp.Rational(89, 10) * b**2, ">=", sp.Integer(-1)),  # negative in a cone only
+    Bound((1 - sp.Rational(1, 10**6)) * a**2 + 4 * a * b + 4 * b**2, ">=", sp.Integer(-1)),
     Bound(sp.tan(x) * (1 - sp.Rational(1, 10**120)), ">=", x, {x: (0, sp.Rational(3, 2))}),
     Bound(sp.sin(a) ** 2 + sp.cos(a) ** 2, "<=", 1 - TINY),
     Bound(sp.pi, "<", sp.Rational(31415926535897932384626433832795028841971, 10**40)),

@@ -207,7 +207,7 @@ class Reading(Answer):
                 symbols[safe] = self.propose(name)
                 if bold:
                     symbols[safe] = {"matrix": ["?", "?"]} if is_matrix else {"vector": "?"}
-                if re.fullmatch(r"[A-Za-z]{2,}|\\mathbf\{[A-Za-z]{2,}\}", spelled):
+                if re.fullmatch(r"([A-Za-z]{2,}|\\mathbf\{[A-Za-z]{2,}\})(_\w|_\{[^{}]*\})?", spelled):
                     questions += f"# Is {spelled} a product or a name? For a product, declare its letters.\n"
                 plain = re.sub(r"\\(mathbf|boldsymbol|bm|mathrm|text|operatorname)\b", "", spelled)
                 if re.sub(r"[\\{}\s]", "", plain) != safe:  # the name that LaTeX means without a table

@@ -181,6 +181,14 @@ def order_hypotheses(zeros: Sequence[Any], box: Mapping[str, Any]) -> list[tuple
     return last[::-1]
 
 
+def is_within(value: Any, limit: Any) -> bool:
+    """Whether a number is shown to lie in a range; False where it has no value, or none that the checker finds."""
+    try:
+        return bool(player.is_inside(value, limit))
+    except (player.Refused, ArithmeticError):
+        return False
+
+
 def solve_for_one(
     zero: Any, names: Sequence[str], point: Point, box: Mapping[str, Any], fixed: set[str], k: int
 ) -> None:
@@ -197,7 +205,7 @@ def solve_for_one(
             top, bottom = player.to_fraction(term)
         except (player.Refused, ZeroDivisionError):
             values = [value for own, value, _ in list_values(term) if own[1] == name and not player.symbols_of(value)]
-            if values and player.is_inside(values[0], box[name]):
+            if values and is_within(values[0], box[name]):
                 point[name] = values[0]
                 fixed.add(name)
                 return

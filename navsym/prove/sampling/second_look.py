@@ -44,6 +44,7 @@ INVERSES = {
 SYMMETRIC = (sp.Abs, sp.cos, sp.cosh)
 WAVES = (sp.sin, sp.cos, sp.tan)
 MOST_EDGES = 8
+RAYS = (10**2, 10**5, 10**9)
 
 #: Functions that are zero where their argument is.
 VANISHING = (sp.Abs, sp.sin, sp.tan, sp.atan, sp.asin, sp.sinh, sp.tanh)
@@ -214,6 +215,7 @@ def look_again(
         zeros_of_factors(difference, limits) if zero_breaks else (),
         meeting_points(difference, limits),
         *(descents(goal, limits) for goal in goals),
+        *(rays(goal, limits) for goal in goals),
     )
     positive = negative = touching = None
     for point in places:
@@ -432,6 +434,26 @@ def descents(goal: sp.Expr, limits: dict[sp.Symbol, Range]) -> Iterator[Point]:
         if value is None or not limits[symbol].contains(value):
             return
         held[symbol] = value
+
+
+def rays(goal: sp.Expr, limits: dict[sp.Symbol, Range]) -> Iterator[Point]:
+    """Far out where the terms of highest degree of a polynomial are lowest, with one coordinate before the others.
+
+    A form that is negative in a narrow cone only, as x**2 + 4 x y + 3.999 y**2, has no lowest place to descend to.
+    """
+    if not limits or not goal.is_polynomial(*limits):
+        return
+    terms = sp.Poly(goal, *limits).terms()
+    degree = max(sum(exponents) for exponents, _ in terms)
+    form = sp.Add(*(c * sp.Mul(*map(sp.Pow, limits, e)) for e, c in terms if sum(e) == degree))
+    for symbol, sign in itertools.product(limits, (1, -1)):
+        rest = {other: limit for other, limit in limits.items() if other is not symbol}
+        for place in find_lowest(form.subs(symbol, sign), rest) if rest else ({},):
+            direction = {symbol: sp.Integer(sign), **{s: round_to_simplest(value) for s, value in place.items()}}
+            for size in RAYS:
+                point = {s: size * value for s, value in direction.items()}
+                if all(limits[s].contains(value) for s, value in point.items()):
+                    yield point
 
 
 def snap_places(places: Sequence[Guess], held: Point, limits: dict[sp.Symbol, Range]) -> Iterator[Point]:
