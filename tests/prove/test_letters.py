@@ -48,14 +48,20 @@ SUMS = [
         LINE,
     ),
 ]
+QUOTIENTS = [
+    ("(1 - cos(x))/x**2 <= 1/2", "(1 - cos(x))/x**2 <= 0.499999", LINE),
+    ("(x - sin(x))/x**3 <= 1/6", "(x - sin(x))/x**3 <= 0.166666", LINE),
+    ("sin(w*T)/(w*T) <= 1", "sin(w*T)/(w*T) <= 0.999999", LINE),
+]
 SMALL = [
     ("sqrt(1 - cos(3e-14)) != 0", "sqrt(1 - cos(3e-14)) = 0"),
     ("sqrt(1 - cos(2e-65)) > 0", "sqrt(1 - cos(2e-65)) > 1e-60"),
     ("abs(asin(1) - asin(1 - 2e-29)) > 0", "abs(asin(1) - asin(1 - 2e-29)) > 1e-13"),
 ]
+EVERYTHING = [*STATEMENTS, *TAILS, *SUMS, *QUOTIENTS, *((*row, LINE) for row in SMALL)]
 
 
-@pytest.mark.parametrize(("true", "false", "given"), [*STATEMENTS, *TAILS, *SUMS, *((*row, LINE) for row in SMALL)])
+@pytest.mark.parametrize(("true", "false", "given"), EVERYTHING)
 def test_what_holds_is_proved_and_what_fails_beside_it_is_refuted(true, false, given):
     verdict = nav.prove(true, **given)
     assert verdict.status in (nav.PROVED, nav.CERTIFIED), verdict.evidence

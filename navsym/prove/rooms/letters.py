@@ -55,6 +55,9 @@ class Span(NamedTuple):
 
 
 WHOLE = Span(None, None)
+#: What is known of a function whatever it is taken of.
+OUTER = {"sqrt": Span(player.ZERO, None), "abs": Span(player.ZERO, None), "cosh": Span(player.ONE, None)}
+OUTER |= {"sin": Span(player.MINUS_ONE, player.ONE), "cos": Span(player.MINUS_ONE, player.ONE)}
 
 
 def by_letters(goal: Any, sample: list[arb]) -> Iterator[Proof]:
@@ -62,7 +65,8 @@ def by_letters(goal: Any, sample: list[arb]) -> Iterator[Proof]:
     for part, name in list_parts(goal):
         form = player.replace(goal.term, part, ("symbol", name))
         is_lonely = not player.symbols_of(form) & player.symbols_of(part)
-        span = find_span(part, goal.box) if is_lonely and player.symbols_of(player.differentiate(form, name)) else None
+        is_bent = is_lonely and player.symbols_of(player.differentiate(form, name))
+        span = find_span(part, goal.box) or OUTER.get(part[0]) if is_bent else None
         if span is not None:  # of u + c the sign is as hard as that of the part
             if any(p in (("asin", part), ("acos", part)) for p in subterms(goal.term)):
                 span = span._replace(low=span.low or player.MINUS_ONE, high=span.high or player.ONE)
@@ -172,12 +176,19 @@ def span_of_sum(term: Term, box: Any) -> Span | None:
 
 
 def span_of_product(term: Term, box: Any) -> Span | None:
-    """A multiple of a span by a number of known sign."""
+    """A multiple of a span by a number of known sign, or a product of symbols of one sign or without bounds."""
     factors = player.list_factors(term)
     moving = [f for f in factors if player.symbols_of(f)]
-    inner = find_span(moving[0], box) if len(moving) == 1 else None
-    share = ("*", player.ONE, *(f for f in factors if f is not moving[0]))
-    value = player.value_of(share, {})
+    share = ("*", player.ONE, *(f for f in factors if f not in moving))
+    names, value = [f[1] for f in moving if f[0] == "symbol"], player.value_of(share, {})
+    if len(moving) > 1 and len(set(names)) == len(moving):
+        limits = [Span(*box[name][:4]) for name in names]
+        is_above = all(s.low == player.ZERO and s.high is None for s in limits)
+        if not is_above and any(s[:2] != (None, None) for s in limits):
+            return None
+        inner = Span(player.ZERO, None, all(s.open_low for s in limits)) if is_above else WHOLE
+    else:
+        inner = find_span(moving[0], box) if len(moving) == 1 else None
     if inner is None or not (value > 0 or value < 0):
         return None
     if value < 0:

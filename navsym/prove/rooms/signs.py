@@ -452,6 +452,14 @@ def compare_squares(term: Term, above: Proof, side: Proof) -> Proof:
     return body | {"proofs": [above, side]}
 
 
+def invert_twice(term: Term, u: Term) -> Iterator[Proof]:
+    """c u != 0 as c (u**(-1))**(-1), which is never 0."""
+    share = sp.cancel(to_sympy(term) / to_sympy(u))
+    if share.is_Rational and share != 0:
+        proof: Proof = {"rule": "product", "factors": [None, None]}
+        yield {"rule": "equal", "to": f"({share})*(({write_term(u)})**(-1))**(-1)", "defined": Holes(), "proof": proof}
+
+
 def divide_by_fourth(u: Term) -> Proof:
     """v > 0 by v u**(-4) = u**(-2), for v = u**2."""
     powers = [write_term(("^", u, player.number(-n))) for n in (4, 2)]
@@ -462,13 +470,15 @@ def divide_by_fourth(u: Term) -> Proof:
 def by_existence(goal: Any, sample: list[arb]) -> Iterator[Proof]:
     """The sign of u where something has a root or the logarithm of u, or is divided by u or by its root.
 
-    u = sqrt(u)**2 >= 0 and u = exp(log(u)) > 0; divided by sqrt(u), u > 0; divided by u, u > 0 where u >= 0.
+    u = sqrt(u)**2 >= 0 and u = exp(log(u)) > 0; divided by sqrt(u), u > 0; divided by u, u != 0, and > 0 where u >= 0.
     """
     own = player.set_union(map(player.conditions, goal.exists)) if player.symbols_of(goal.term) else ()
     for relation, u in own:
         inner = u[1] if relation == "!=" and u[0] == "sqrt" else u
         if not player.symbols_of(u) or (relation == ">=" and goal.relation != ">="):
             continue
+        if relation == goal.relation == "!=":
+            yield from invert_twice(goal.term, u)
         if player.is_identity(player.subtract(goal.term, inner)):
             if relation != "!=":
                 form = ("exp", ("log", u)) if relation == ">" else ("^", ("sqrt", u), player.number(2))
