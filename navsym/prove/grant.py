@@ -33,7 +33,7 @@ from navsym.prove.wording import decimal_ends
 
 UNCHECKED = "unchecked: no certificate of this statement"
 BITS, MORE_BITS = (128, 1024, 8192), (20_000, 190_000)
-POINTS = 18
+POINTS, MORE_POINTS = 18, 72
 #: Letters of a coordinate that is short enough for a reader.
 SHORT = 3
 WAVES = ("sin", "cos", "tan", "cot", "sec", "csc")
@@ -366,16 +366,18 @@ def find_witness(terms: Sequence[Any], box: Mapping[str, Any]) -> tuple[int, dic
 
     That sqrt(1 - cos(3e-14)) has a value takes more bits than most.
     """
-    for bits in BITS:
+    for bits, count in itertools.product(BITS, (POINTS, MORE_POINTS)):
         with ctx.workprec(bits):
-            for point, _ in defined_points(terms, box):
+            for point, _ in defined_points(terms, box, count):
                 return bits, write_point(point)
     return BITS[0], None
 
 
-def defined_points(terms: Sequence[Any], box: Mapping[str, Any]) -> Iterator[tuple[dict[str, fmpq], dict[str, Any]]]:
+def defined_points(
+    terms: Sequence[Any], box: Mapping[str, Any], count: int = POINTS
+) -> Iterator[tuple[dict[str, fmpq], dict[str, Any]]]:
     """Some points of a box at which all terms have values: as numbers, and for the evaluation."""
-    for point in draw_points(box, POINTS if box else 3):
+    for point in draw_points(box, count if box else 3):
         place = {name: player.Jet(arb(value)) for name, value in point.items()}
         if all(player.value_of(term, place).is_finite() for term in terms):
             yield point, place

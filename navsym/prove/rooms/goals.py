@@ -307,7 +307,7 @@ def draw_points(box: Any, count: int) -> Iterator[dict[str, fmpq]]:
         point = {}
         for i, (name, limit) in enumerate(box.items()):
             if k < count // 3:
-                point[name] = simple_point(limit, (k + 2 * i * k) % 6)
+                point[name] = simple_point(limit, (k + 2 * i * k) % max(6, count // 3))
             elif limit.low is None and limit.high is None and not limit.integer:
                 number = fmpq(sp.prime(i + 2) + k, 1 + (k + i) % 7)
                 point[name] = (number, 1 / number, -number, -1 / number)[(k + i // 2) % 4]

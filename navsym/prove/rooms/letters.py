@@ -66,11 +66,20 @@ def by_letters(goal: Any, sample: list[arb]) -> Iterator[Proof]:
         form = player.replace(goal.term, part, ("symbol", name))
         is_lonely = not player.symbols_of(form) & player.symbols_of(part)
         is_bent = is_lonely and player.symbols_of(player.differentiate(form, name))
-        span = find_span(part, goal.box) or OUTER.get(part[0]) if is_bent else None
+        known = {} if goal.relation == "=" else OUTER
+        span = find_span(part, goal.box) or known.get(part[0]) if is_bent else None
         if span is not None:  # of u + c the sign is as hard as that of the part
             if any(p in (("asin", part), ("acos", part)) for p in subterms(goal.term)):
-                span = span._replace(low=span.low or player.MINUS_ONE, high=span.high or player.ONE)
+                span = cut_to_sine(span)
             yield abstract({name: write_term(part)}, {name: span.write()}, write_term(form))
+
+
+def cut_to_sine(span: Span) -> Span:
+    """The part of a span that an inverse sine takes."""
+    low, high = (None if end is None else player.value_of(end, {}) for end in (span.low, span.high))
+    if low is None or low < -1:
+        span = span._replace(low=player.MINUS_ONE, open_low=False)
+    return span._replace(high=player.ONE, open_high=False) if high is None or high > 1 else span
 
 
 def by_common_parts(goal: Any, sample: list[arb]) -> Iterator[Proof]:
@@ -180,6 +189,7 @@ def span_of_product(term: Term, box: Any) -> Span | None:
     factors = player.list_factors(term)
     moving = [f for f in factors if player.symbols_of(f)]
     share = ("*", player.ONE, *(f for f in factors if f not in moving))
+    inner: Span | None
     names, value = [f[1] for f in moving if f[0] == "symbol"], player.value_of(share, {})
     if len(moving) > 1 and len(set(names)) == len(moving):
         limits = [Span(*box[name][:4]) for name in names]
