@@ -61,15 +61,21 @@ def numbers_of(text: str) -> set[Fraction]:
 
 
 @cache
-def read_file(path: str) -> ast.Module:
+def read_file(path: str, _changed: int) -> ast.Module:
     return ast.parse(Path(path).read_text(encoding="utf-8"))
+
+
+@cache
+def read_function(function: FunctionType) -> ast.Module:
+    return ast.parse(textwrap.dedent(inspect.getsource(function)))
 
 
 def body_of(claim: Claim) -> list[ast.AST]:
     """The statements of the function that states a claim, without its docstring."""
     derive = inspect.unwrap(claim.derive)
     first = derive.__code__.co_firstlineno
-    tree = read_file(derive.__code__.co_filename)
+    path = derive.__code__.co_filename
+    tree = read_file(path, Path(path).stat().st_mtime_ns)
     nodes = [node for node in ast.walk(tree) if isinstance(node, ast.FunctionDef | ast.Lambda)]
     starts = [min([node.lineno, *(one.lineno for one in getattr(node, "decorator_list", []))]) for node in nodes]
     node = next(node for node, start in zip(nodes, starts, strict=True) if start == first)
@@ -99,8 +105,7 @@ def source_texts(claim: Claim) -> Iterator[str]:
         for name, value in named_in(body, scope):
             if isinstance(value, FunctionType) and value.__module__.startswith(f"{PAPERS}.") and value not in seen:
                 seen.add(value)
-                node = ast.parse(textwrap.dedent(inspect.getsource(value)))
-                waiting.append(([node], value.__globals__, False))
+                waiting.append(([read_function(value)], value.__globals__, False))
             elif isinstance(value, int | str | Fraction | sp.Basic | tuple | list | dict) and (
                 is_own or name.isupper()
             ):
