@@ -45,6 +45,7 @@ PAPER = Paper(
     ),
     beyond="4.11.nonzero-beyond range.* position.*",
     causes={"4.4": "4.3.u2"},
+    typed="3.3 3.3.back 1.quarter-period 1.quarter-period.minute",
     left_out={
         "after (1.1): all y_i are of one order, beta_3 of a higher one": "no figures of the errors are given",
         "(1.1): U beta_3; before (2.7): sgn of an impulse": "conventions: U in units of omega_0; signs of the weights",
@@ -58,6 +59,9 @@ PAPER = Paper(
         "(4.14) and (4.16) are easily realised; section 3: the difference from least squares": "judgements",
         "(2.5): Phi_H as any piecewise continuous function": "2.6.piecewise, 2.D.piecewise, 3.1.piecewise take "
         "polynomials of degree 2 on two pieces",
-        "(3.1): both problems have one value, for every system": "proved for this one and every T, by 4.13 and range.*",
+        "(3.1): both problems have one value, for every system": "proved for this one and every T, by 4.13 and "
+        "range.*, and >= for every system, by 3.1 and 3.1.terms; <= needs a separating hyperplane: a statement "
+        "here has finitely many real variables, none of which is a function Phi or a number of instants",
+        "(3.4) the other way, for every system": "3.3.back says it of the constraint; that its L is least is that <=",
     },
 )

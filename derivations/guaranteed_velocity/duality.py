@@ -193,7 +193,7 @@ def objective(correlation: int) -> Equation:
     """The squared objective of (2.7) beside the variance at one correlation, for two weights of one sign."""
     a1, a2 = sp.symbols("a1 a2", positive=True)
     between = sp.Matrix([[1, correlation], [correlation, 1]])
-    return Equation(variance((a1, a2), between, (sigma, sigma)), (sigma * (a1 + a2)) ** 2)
+    return Equation((sigma * (a1 + a2)) ** 2, variance((a1, a2), between, (sigma, sigma)))
 
 
 name_of_the_problem = claim(

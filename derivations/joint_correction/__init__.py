@@ -60,6 +60,7 @@ PAPER = Paper(
         "1.*": "systems with (n, m) = (2, 1), (3, 2), (4, 2), (5, 3), one family of C_1 and C_2, not every size",
         "3.1.remaining": "mu u_3 not 1 or -1",
     },
+    typed="1.6.kalman_unique",
     left_out={
         "q_x = L_x q, q_z = L_z q, q_u, q_v, q_w, r_x = r_1, r_z = r_2": "names of the noises in new variables",
         "below (1.13): in general less preferable than (1.11)": "a judgement; 1.13.preferable shows both sides",

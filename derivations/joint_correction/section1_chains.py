@@ -149,7 +149,7 @@ def initial_estimate():
         _, _, row = observer(size)
         start = section1_systems.free("x", size) * sp.Matrix([first, *[0] * (size - 1)])
         values.append((row * start)[0])
-    return Equation(values, [first] * 3)
+    return Equation([first] * 3, values)
 
 
 @claim("1.6.kalman_unique")

@@ -309,7 +309,7 @@ def steady_error_of_the_velocity_stage():
     """Constant d_2 in x_2', d_3 in x_3' leave d_2 + d_3 - 3 d_3/l^2, (1 - 3 l^2) d_3/l^3, 3 d_3/l (l = lambda_c)."""
     d2, d3 = sp.symbols("d_2 d_3", real=True)
     steady = sp.Matrix([d2 + d3 - 3 * d3 / lam**2, (1 - 3 * lam**2) * d3 / lam**3, 3 * d3 / lam])
-    return Equation(list(velocity_block(VELOCITY_GAINS) * steady), [sp.Integer(0), -d2, -d3])
+    return Equation([sp.Integer(0), -d2, -d3], list(velocity_block(VELOCITY_GAINS) * steady))
 
 
 @claim("3.bias.position")
@@ -319,10 +319,8 @@ def steady_error_of_the_position_stage():
     d gathers the steady error of x_1° and the terms left out.
     """
     d = sp.Symbol("d", real=True)
-    return Equation(
-        list(position_block((2 * lam_h, lam_h**2 - mu**2 * w2**2)) * sp.Matrix([-d / lam_h**2, -2 * d / lam_h])),
-        [sp.Integer(0), d],
-    )
+    steady = sp.Matrix([-d / lam_h**2, -2 * d / lam_h])
+    return Equation([sp.Integer(0), d], list(position_block((2 * lam_h, lam_h**2 - mu**2 * w2**2)) * steady))
 
 
 # Pre-estimation and the situations of the last paragraph

@@ -40,11 +40,14 @@ PAPER = Paper(
     beyond="10.forgets* 10.error* 17.error* K.exact K.fold K.longer",
     scopes={
         "17.memory": "one state, two modes",
-        "19": "3 modes",
+        "17.same": "F = 1, Q = 2, H = 1, R = 3, one series of measurements",
+        "17.first": "one series of measurements, z = 3",
+        "19": "3 modes, 1 to 6 steps",
         **dict.fromkeys(
             ("8.joseph", "8.posterior", "18.exponent", "18.normaliser"), "(states, measurements) (1,1), (2,1), (1,2)"
         ),
     },
+    typed=("17.error 17.error.sharp 15.gaussian 13.every accumulate near.excess near.spread near.cumulant"),
     left_out={
         "(18), exponent: v^T/(2D) v": "a division by a matrix, read as the inverse",
         "above (4): S(psi, 0, 0) = 0": "the definition of an error model: what is shown less what is true",
@@ -55,7 +58,8 @@ PAPER = Paper(
         "(8) to (21) for any number of modes and values": "claimed for the numbers that each title names",
         "below (4): W(k)": "its covariance is not printed",
         "(3): the dots over S1 and S2": "part of two names: the printed definitions are partial derivatives, no rates",
-        "below (21): a prior that is a weighted sum of Gaussians": "its weights for each mode are not printed",
+        "below (21): a prior that is a weighted sum of Gaussians": "its weights for each mode are not "
+        "printed, nor those of the pairs of a mode and a component behind them: no sides to compare",
         "below (11): in the form (1); above (12): on the j-th step": "(11) and k; nothing is computed from them",
         "(3) acceptable in most cases, (4) more adequate, K by statistical modelling": "judgements and advice",
     },

@@ -100,7 +100,7 @@ def the_worst_probability():
 
 @claim("10.error.steady")
 def errors_do_not_pile_up():
-    """(10) with rho^i, two modes: an error of log-odds of 2 c/(1 - kappa) stays; from zero it never gets there.
+    """(10) with rho^i, two modes: an error of log-odds of 2 c/(1 - kappa) stays; a step leaves kappa of the rest.
 
     A step multiplies by kappa and adds at most 2 c: what is missing to the bound is multiplied by kappa, too.
     """

@@ -28,7 +28,7 @@ def inverse(A: sp.Matrix) -> sp.Matrix:
 
 @claim("8.predict")
 def prediction():
-    """Between (13) and (14): A P A^T + Q is the covariance of x(k), A P that with x(k-1), for one and two states.
+    """Between (13) and (14): A P A^T + Q is the covariance of x(k), A P that with x(k-1), for 1 and 2 states.
 
     The information matrix of (x(k), x(k-1)) read off the two exponents, times the covariance that Kalman's
     prediction says, is the identity.
@@ -38,7 +38,7 @@ def prediction():
         Qi, Pi = inverse(Q), inverse(P)
         information = sp.Matrix(sp.BlockMatrix([[Qi, -Qi * A], [-A.T * Qi, Pi + A.T * Qi * A]]))
         moments = sp.Matrix(sp.BlockMatrix([[A * P * A.T + Q, A * P], [P * A.T, P]]))
-        yield information * moments, sp.eye(2 * n)
+        yield sp.eye(2 * n), information * moments
 
 
 def measured(n: int, m: int):
@@ -57,7 +57,7 @@ def correction():
     """Between (13) and (14): P - K H P inverts the sum of informations, (states, measurements) (1,1), (2,1), (1,2)."""
     for n, m in SHAPES:
         P, H, R, _, _, corrected = measured(n, m)
-        yield (inverse(P) + H.T * inverse(R) * H) * corrected, sp.eye(n)
+        yield sp.eye(n), (inverse(P) + H.T * inverse(R) * H) * corrected
 
 
 @claim("8.joseph")

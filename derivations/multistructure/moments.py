@@ -171,7 +171,7 @@ def accumulate():
 
 @claim("accumulate.all")
 def accumulate_all():
-    """Two to four partial estimates added one at a time give (12) and (13)."""
+    """2 to 4 partial estimates added one at a time give (12) and (13)."""
     for size in (2, 3, 4):
         w = [sp.Symbol(f"w_{i}", positive=True) for i in range(size)]
         _, a, b, c = mixture(size)

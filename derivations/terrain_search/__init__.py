@@ -82,6 +82,11 @@ PAPER = Paper(
         "offset": "tracks of 4 measurements",
         "acceleration": "n = 2 to 7",
     },
+    typed=(
+        "table.full gain run.count 6.time 10.equal.sum table.quantisation table.acceleration.white "
+        "grid.experiment table.close.mean roots mean.primitives grid.count 2.cost 1.height "
+        "velocity.grid offset.groups offset"
+    ),
     left_out={
         "sigma over n - 1": "a convention; about a known truth n makes the mean square unbiased",
         "accuracy close to that of the joint search": "by table 1 only (table.close)",

@@ -42,7 +42,9 @@ PAPER = Paper(
         "1.general": "n = 8",
         "algorithm.J.still": "n = 5",
         "experiment.straight.*": "n = 3, three steps",
+        "window.legendre": "d to 9, r to 3",
     },
+    typed=("algorithm.P.not_covariance algorithm.estimate experiment.heading experiment.together.least experiment.eps"),
     left_out={
         "lambda = lambda^e": "one meridian plane: true whatever the meridian is",
         "(5): N_pN = N_p D^-1 is the observability matrix of (5), with columns of unit length": "what x^q = D x means",

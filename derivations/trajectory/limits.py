@@ -225,7 +225,7 @@ MOTIONS = tuple(
 # The heading is made continuous; its greatest acceleration, some seconds later, is 0.1081 m/s^2.
 yawing_of_the_experiment = claim(
     "limit.yawing",
-    "Noise within sqrt(3) m, |dV_2/dt| <= 0.108 m/s^2, as yawing begins at 100 m/s: V_2 no better than 0.86 m/s.",
+    "Noise within sqrt(3) m, |dV_2/dt| <= 0.1077 m/s^2, as yawing begins at 100 m/s: V_2 no better than 0.86 m/s.",
     lambda: Equation(
         sp.Rational("0.86"),
         QUESTIONS[0].best.subs({sigma: sp.sqrt(3), M: (100 * sp.sin(sp.pi / 4) * (5 * sp.pi / 180 * 2 * sp.pi / 360))}),

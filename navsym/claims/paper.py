@@ -30,6 +30,7 @@ class Paper:
     beyond      : claims on what the paper does not treat
     causes      : refuted claim -> the claim whose slip it only repeats
     scopes      : claims -> the sizes or values they are examined for, unless their statements name them; the first fits
+    typed       : claims whose derived side is written down and not derived: short sums, identities of printed letters
     left_out    : printed statement -> why no claim judges it
 
     Claims are named by number or pattern, with blanks between (``"1.3.spectrum range.*"``), a correction by the claim
@@ -50,6 +51,7 @@ class Paper:
     beyond: str = ""
     causes: Mapping[str, str] = field(default_factory=dict)
     scopes: Mapping[str, str] = field(default_factory=dict)
+    typed: str = ""
     left_out: Mapping[str, str] = field(default_factory=dict)
 
     def kind_of(self, number: str) -> Kind:

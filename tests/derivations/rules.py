@@ -18,9 +18,22 @@ from navsym.claims import CONFIRMED, OPEN, REFUTED, Claim, Paper, compare_equati
 from navsym.claims.claim import Slip, collect_pairs
 from navsym.claims.record import Record
 from navsym.prove.grant import UNCHECKED
+from tests.derivations.titles import (
+    FIGURE,
+    numbers_of_no_statement,
+    numbers_under_a_general_title,
+    ranges_narrower_than_the_title,
+    sizes_in_no_scope,
+    words_that_nothing_shows,
+)
+from tests.derivations.typed import typed_in
 
 #: Words of a title that say more than one example: their quantifier has to stand in the scope, or a range in the title.
 QUANTIFIERS = re.compile(r"\b(every|always|in general|whatever|on average|inevitably|any|never)\b", re.IGNORECASE)
+#: A free choice: of a gain, an interval, a start.
+CHOICE = re.compile(
+    r"\b(?:an?|An?|[Ss]ome|[Oo]ne) (?:[a-z]+ )?(?:gain|run|interval|start|window|step)s? (?:gives?|has|reach)"
+)
 RANGE = re.compile(r"[\[(][^\])]*\d[^\])]*[\])]|n = \d|\d (to|and|or) \d")
 
 
@@ -127,10 +140,30 @@ def statements_of(tree: ast.Module) -> list[tuple[int, list[ast.expr]]]:
     return [(line, sides) for line, sides in found if len(sides) == 2]
 
 
+def files_of(judged: Judged) -> list[Path]:
+    """The sources of the claims of a paper."""
+    sources = {claim.derive.__code__.co_filename for claim in judged.claims} - {collect_pairs.__code__.co_filename}
+    return sorted(map(Path, sources))
+
+
+def sides_that_nothing_computes(judged: Judged) -> list[str]:
+    """A derived side comes from a model or a derivation, or its paper declares it as typed in; and only then."""
+    found = dict.fromkeys(typed_in(files_of(judged), statements_of))
+    declared = judged.paper.typed.split()
+    return [one for one in found if one.rstrip("*") not in declared] + [
+        one for one in declared if not {one, f"{one}*"} & {*found}
+    ]
+
+
+def figures_that_choose_alone(judged: Judged) -> list[str]:
+    """Who may choose a gain, a run or an interval chooses it for all figures of a sentence, not for one of them."""
+    held = [r for r in judged.records if r.status.holds and CHOICE.search(r.title)]
+    return [r.id for r in held if len(FIGURE.findall(r.title)) == 1]
+
+
 def sides_of_one_expression(judged: Judged) -> list[str]:
     """What stands on both sides in the same words holds whatever the model is."""
-    sources = {claim.derive.__code__.co_filename for claim in judged.claims} - {collect_pairs.__code__.co_filename}
-    files = sorted(map(Path, sources))
+    files = files_of(judged)
     read = [(file, statements_of(ast.parse(file.read_text(encoding="utf-8")))) for file in files]
     assert any(found for _, found in read)
     return [f"{file.name}:{line}" for file, found in read for line, (a, b) in found if ast.dump(a) == ast.dump(b)]
@@ -164,4 +197,11 @@ RULES: tuple[Callable[[Judged], list[str]], ...] = (
     certificates_that_lack_without_a_reason,
     sides_of_one_expression,
     tolerances_wider_than_half_a_unit,
+    sides_that_nothing_computes,
+    figures_that_choose_alone,
+    numbers_of_no_statement,
+    numbers_under_a_general_title,
+    ranges_narrower_than_the_title,
+    sizes_in_no_scope,
+    words_that_nothing_shows,
 )

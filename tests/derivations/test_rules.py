@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import re
+from dataclasses import replace
 from functools import cache
 
 import pytest
@@ -24,6 +25,7 @@ from navsym.claims import (
 from navsym.claims.paper import import_paper, papers_folder
 from navsym.prove.ladder import decide
 from navsym.verification.ledger import Ledger, records_about
+from tests.derivations.answered import ANSWERED
 from tests.derivations.rules import RULES, Judged
 from tests.derivations.statements import PAPERS
 
@@ -47,7 +49,41 @@ def records(name):
 @pytest.mark.parametrize("name", PAPERS)
 def test_no_paper_breaks_a_rule(name, rule):
     paper, claims = read(name)
-    assert not rule(Judged(paper, claims, tuple(records(name))))
+    answered = {one for one in ANSWERED.get(rule.__name__, {}) if one.startswith(f"{name}:")}
+    assert {*rule(Judged(paper, claims, tuple(records(name))))} == answered
+
+
+#: Rule, claim, and what its title or its scope said before it was mended, or would say too much.
+SAID_TOO_MUCH = (
+    ("ranges_narrower_than_the_title", "guaranteed_velocity:range.y1", {"scope": "all T in (0, 2*pi]"}),
+    ("ranges_narrower_than_the_title", "guaranteed_velocity:4.11.nonzero-beyond", {"title": "det N, T <= 7."}),
+    ("ranges_narrower_than_the_title", "guaranteed_velocity:range.y3.last", {"title": "y3, T >= pi/2: half of it."}),
+    ("sizes_in_no_scope", "trajectory:window.legendre", {"scope": "numbers"}),
+    ("sizes_in_no_scope", "terrain_search:acceleration", {"scope": "all real a"}),
+    ("sizes_in_no_scope", "multistructure:accumulate.all", {"title": "Partial estimates added give (12) and (13)."}),
+    (
+        "words_that_nothing_shows",
+        "multistructure:10.error.steady",
+        {"title": "An error of 2 c/(1 - kappa) stays; from zero it never gets there."},
+    ),
+    ("numbers_of_no_statement", "trajectory:window.figures", {"title": "For 0.019 m/s n = 5 needs 183.5 s."}),
+    ("numbers_under_a_general_title", "alpha_beta_filter:index-one", {"title": "The gains of the filter."}),
+    (
+        "figures_that_choose_alone",
+        "trajectory:experiment.sigma_v.2",
+        {"title": "|V| = 2 m/s: a stable gain gives 0.06 m/s on a straight course."},
+    ),
+)
+
+
+@pytest.mark.parametrize(("rule", "name", "words"), SAID_TOO_MUCH)
+def test_a_title_that_says_too_much_is_found(rule, name, words):
+    (rule,) = [one for one in RULES if one.__name__ == rule]
+    paper, claims = read(name.partition(":")[0])
+    (claim,) = [one for one in claims if one.id == name]
+    (record,) = [one for one in records(paper.module) if one.id == name]
+    assert name not in rule(Judged(paper, (claim,), (record,)))
+    assert name in rule(Judged(paper, (claim,), (replace(record, **words),)))
 
 
 @pytest.mark.parametrize("name", PAPERS)

@@ -93,6 +93,14 @@ FAULTS = (
     ("certificates_that_lack_without_a_reason", 'unsaid="four numbers are looked at"', 'unsaid=""'),
     ("sides_of_one_expression", "printed=2 * u - 3", "printed=slope()"),
     ("tolerances_wider_than_half_a_unit", 'Rational("0.005")', 'Rational("0.05")'),
+    ("sides_that_nothing_computes", "derived=slope())", "derived=u + u - 3)"),
+    ("sides_that_nothing_computes", 'typed="1 2"', 'typed="1 2 3.figure"'),
+    ("figures_that_choose_alone", "The slope at sqrt(3) is 0.46.", "A run has the slope 0.46."),
+    ("numbers_of_no_statement", "The slope at sqrt(3) is 0.46.", "The slope at sqrt(3) is 0.58."),
+    ("numbers_under_a_general_title", "The slope is zero at 3/2.", "The slope is zero somewhere."),
+    ("ranges_narrower_than_the_title", "for every w and t.", "for every v."),
+    ("sizes_in_no_scope", 'scope="u = 2, 3, 4, 5"', 'scope="u = 2, 3, 4"'),
+    ("words_that_nothing_shows", "The slope of the model is 2 u - 3.", "The slope of the model is at most 2 u - 3."),
 )
 
 
@@ -117,7 +125,9 @@ def folder(tmp_path, monkeypatch):
     text = path.read_text(encoding="utf-8").replace("import Equation,", "import UNDECIDED, Equation,")
     text = text.replace("Status, claim", "Status, claim, fact")
     remarks = "3.turning 3.run 3.steep 3.figure 3.open"
-    card = f'    remarks="{remarks}",\n    causes={{}},\n    left_out={{"a figure": "no numbers"}},\n)\n'
+    card = (
+        f'    remarks="{remarks}",\n    causes={{}},\n    typed="1 2",\n    left_out={{"a figure": "no numbers"}},\n)\n'
+    )
     path.write_text(re.sub(r"^\)\n", lambda _: card, text, count=1, flags=re.MULTILINE) + MORE, encoding="utf-8")
     monkeypatch.chdir(root)
     monkeypatch.setattr(navsym_papers, "__path__", [*navsym_papers.__path__, str(root / "papers")])

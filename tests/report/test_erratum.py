@@ -12,11 +12,13 @@ from dataclasses import replace
 from pathlib import Path
 from xml.dom import minidom
 
+import numpy as np
 import pytest
 
 import navsym as nav
 from navsym.claims import Paper, Record, claims_of
 from navsym.core.errors import NavsymError
+from navsym.language.expression import parse
 from navsym.report.erratum import erratum_of
 from navsym.report.formula.latex import mathml, sentence_html, sentence_latex
 from navsym.report.page import TEMPLATES, environment
@@ -113,6 +115,13 @@ def worst_turn(speed):
     return s / math.sqrt(1 - s * s)
 
 
+def gain_of_unit_columns(n, tau):
+    """Condition number of the rows (1, x tau, ..., (x tau)^(n-1)/(n-1)!), x = 1 to n, over that with unit columns."""
+    rows = [[(x * tau) ** k / math.factorial(k) for k in range(n)] for x in range(1, n + 1)]
+    columns = np.array(rows)
+    return np.linalg.cond(columns) / np.linalg.cond(columns / np.linalg.norm(columns, axis=0))
+
+
 (ABOVE, BELOW), SQUARED = folded((0.5, 0.5), 0.9, (0.8, 0.2))
 EARTH = 6.371e6
 FIGURES = [  # claim, the figure as the sheet has it, and what it is
@@ -142,7 +151,21 @@ FIGURES = [  # claim, the figure as the sheet has it, and what it is
     ("trajectory:experiment.sigma_phi.100", "0.076", 1.2e-8 * EARTH),
     ("trajectory:experiment.sigma_phi.100", "0.0013", math.radians(1.2e-8) * EARTH),
     ("trajectory:experiment.sigma_phi.100", "0.0024", math.radians(2.2e-8) * EARTH),
+    ("guaranteed_velocity:4.16.y5", "0.293", 1 - math.sqrt(0.5)),
+    ("guaranteed_velocity:4.16.y6", "1.707", 1 / (4 * math.sin(math.pi / 8) ** 2)),
+    ("terrain_search:cost.additional", "1.072", 1 + 11**2 / 41**2),
+    ("trajectory:earth.tan_phi", "0.918", 1 - 0.082),
+    ("trajectory:experiment.better", "0.877", gain_of_unit_columns(5, 0.65)),
+    ("trajectory:experiment.sigma_v.unit", "1.14", 0.019 * 60),
 ]
+#: Figures of sheets with three digits and more that are data of an example, or end in a claim's evidence.
+GIVEN = {
+    "trajectory:earth.tan_phi": "0.082",
+    "trajectory:experiment.gain": "1.0006",  # experiment.gain has the radius in balls
+    "trajectory:experiment.much_better": "2.56",  # the certified table has both condition numbers
+    "terrain_search:gain": "40.1 40.05 2.25",
+    "multistructure:4.type": "6.37",
+}
 
 
 @pytest.mark.parametrize(("name", "figure", "number"), FIGURES)
@@ -151,6 +174,56 @@ def test_the_numbers_of_a_sheet_are_right_to_their_last_digit(name, figure, numb
     worded = words_of(module)[claim]
     assert figure in worded.check + worded.why
     assert abs(float(figure) - number) <= 0.5001 * 10.0 ** -len(figure.partition(".")[2])
+
+
+def sides_in_numbers(text):
+    """The formulas of a sheet that are equations between numbers: each side with its value."""
+    for formula in re.findall(r"\$(.*?)\$", text):
+        plain = formula.replace(r"\cdot", "*").replace(r"\pi", "pi").replace(r"\,", "")
+        plain = re.sub(r"\\sin\^2\(([^()]*)\)", r"*sin(\1)**2", re.sub(r"\\sin\(", "*sin(", plain))
+        plain = re.sub(r"\\sqrt(\d|\{\d+\})", r"sqrt(\1)", plain)
+        plain = re.sub(r"\^(\d|\{[^{}]*\})", r"**(\1)", plain).replace("{", "").replace("}", "")
+        sides = [side.strip() for side in plain.split("=")]
+        is_number = [side and not re.search(r"[^\d\s.+*/()-]", re.sub("sqrt|sin|pi", "", side)) for side in sides]
+        if len(sides) > 1 and all(is_number) and r"\pi^" not in formula:  # pi^i is a density
+            yield [(side, float(parse(side, {}))) for side in sides]
+
+
+def wrong_equations(text):
+    """Equations between numbers that do not hold to half a unit of the last digit of their last side."""
+    for sides in sides_in_numbers(text):
+        half = (
+            0.5001 * 10.0 ** -len(sides[-1][0].partition(".")[2]) if re.fullmatch(r"-?[\d.]+", sides[-1][0]) else 1e-9
+        )
+        if any(abs(value - sides[-1][1]) > half for _, value in sides):
+            yield sides
+
+
+def test_a_wrong_equation_on_a_sheet_is_found():
+    assert not [*wrong_equations(r"$3\cdot2^2=12$, $4\sin(\pi/4)\sin^2(\pi/8)=0.414$ and $x=3$, $121/1681=0.072$")]
+    assert len([*wrong_equations(r"$1+6+3=11$, $121/1681=0.071$, $3^5=242$")]) == 3
+
+
+@pytest.mark.parametrize("module", MODULES)
+def test_equations_between_numbers_on_a_sheet_hold(module):
+    texts = [part for worded in words_of(module).values() for part in (worded.correct, worded.why, worded.check)]
+    assert any([*sides_in_numbers(text)] for text in texts) or module == "joint_correction"
+    assert not [sides for text in texts for sides in wrong_equations(text)]
+
+
+@pytest.mark.parametrize("module", MODULES)
+def test_every_long_figure_of_a_sheet_is_decided(module):
+    """It stands in a claim, in the print, in an equation between numbers, or is computed by other code above."""
+    claims = [r for r in LEDGER if r.paper == module]
+    for number, worded in words_of(module).items():
+        near = [r for r in claims if r.number.split(".")[0] == number.split(".")[0]]
+        known = " ".join([worded.printed, GIVEN.get(f"{module}:{number}", ""), *(f"{r.to_json()}" for r in near)])
+        known += " ".join(figure for name, figure, _ in FIGURES if name == f"{module}:{number}")
+        text = f"{worded.correct} {worded.why} {worded.check}"
+        known += " ".join(side for sides in sides_in_numbers(text) for side, _ in sides)
+        figures = re.findall(r"(?<![\w.^_{(])\d*\.\d+", text.replace(r"\,", ""))
+        long = [one for one in figures if len(one.replace(".", "").lstrip("0")) > 2]
+        assert not [one for one in long if one not in known], number
 
 
 @pytest.mark.parametrize(
