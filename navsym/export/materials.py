@@ -25,7 +25,7 @@ from navsym.export.algorithms.models import functions_of_model, matrix_function,
 from navsym.export.functions import RefusedError, formula_lines, function_of, material, require_exportable
 from navsym.export.languages.names import function_name
 from navsym.export.parts import ExportedFunction, Layout, Material, Output, Source, inside
-from navsym.export.ready import READY, algorithm, is_program, units_of_paper
+from navsym.export.ready import KALMAN, PAPERS, READY, algorithm, units_of_paper
 from navsym.guaranteed.phases.answer import Phases, Regime, end_text
 from navsym.guaranteed.phases.front import phases
 from navsym.guaranteed.phases.tables import TablePiece, tabulate_regime
@@ -93,7 +93,7 @@ def functions_from(
 
 def functions_of_claim(text: str, real: str, allow_confirmed: bool, units: Mapping[str, str]) -> list[ExportedFunction]:
     """The functions of one claim or of regimes ``A+B+C``; ``name=A+B`` gives a name; a ready-made program has two."""
-    if is_program(text):
+    if text in (KALMAN, *PAPERS):
         return algorithm(text, lambda claim: material_of_claim(claim, allow_confirmed), real)
     if text.endswith(".toml") and is_model(path := file_of_source(text)):
         if "code" in read_toml(path):

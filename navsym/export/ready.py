@@ -25,11 +25,6 @@ def units_of_paper(paper: str) -> dict[str, str]:
     return dict(import_paper(f"{paper}.programs").UNITS) if paper in WITH_UNITS else {}
 
 
-def is_program(name: str) -> bool:
-    """True for the name of a ready-made chain or program."""
-    return name == KALMAN or name in PAPERS
-
-
 def algorithm(name: str, decided: Decided, real: str) -> list[ExportedFunction]:
     """The functions of a ready-made chain or program."""
     found: Chain | Program = update(9, 3) if name == KALMAN else import_paper(f"{PAPERS[name]}.programs").PROGRAMS[name]

@@ -221,18 +221,11 @@ def correct_by_qr(mean: Array, S: Array, z: Array, H: Array, R: Array) -> tuple[
     regular = np.asarray((spread > 0.0).all(axis=-1))
     X = np.where(regular[..., None, None], X, np.eye(p))
     white = np.linalg.solve(X, (z - times(H, mean))[..., None])[..., 0]
-    distance, volume = sum_of_squares(white), np.log(np.where(regular[..., None], spread, 1.0)).sum(axis=-1)
+    volume = np.log(np.where(regular[..., None], spread, 1.0)).sum(axis=-1)
+    with np.errstate(over="ignore", invalid="ignore"):
+        distance, corrected = (white * white).sum(axis=-1), mean + times(Y, white)
     likelihood = -0.5 * (distance + p * LOG_TWO_PI) - volume
-    usable = regular & np.isfinite(likelihood)
-    with np.errstate(over="ignore", invalid="ignore"):
-        corrected = mean + times(Y, white)
-    return choose_usable(usable, corrected, Z, likelihood, mean, S)
-
-
-def sum_of_squares(v: Array) -> Array:
-    """Sum of squares, infinite without a warning."""
-    with np.errstate(over="ignore", invalid="ignore"):
-        return np.asarray((v * v).sum(axis=-1))
+    return choose_usable(regular & np.isfinite(likelihood), corrected, Z, likelihood, mean, S)
 
 
 def choose_usable(

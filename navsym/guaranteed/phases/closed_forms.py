@@ -25,7 +25,7 @@ from navsym.guaranteed.certificate.polish import ContactSolution, sharpen_contac
 from navsym.guaranteed.phases.budget import LEAST, Budget
 from navsym.guaranteed.phases.family import Family, U
 from navsym.guaranteed.phases.patterns import Pattern, PatternInterval, contact_pattern, sample_contacts
-from navsym.guaranteed.phases.recognise import middle_of_constant, recognise_place
+from navsym.guaranteed.phases.recognise import recognise_place
 from navsym.prove.equations import decide_equation, weakest_verdict
 from navsym.prove.ladder import DEFAULT_MEGABYTES, search_verdict
 from navsym.prove.optimum import decide_feasibility, decide_times, decide_values
@@ -156,7 +156,6 @@ def recognise_places(family: Family, span: PatternInterval, found: Sequence[Shar
     panels, lengths = [k for k, _, _ in span.pattern], [s.T for s in found]
     columns = [[s.places[i] for s in found] for i in range(len(span.pattern))]
     places = [recognise_place(family, k, c, lengths) for k, c in zip(panels, columns, strict=True)]
-    places = [middle_of_constant(family, k) if p is None else p for k, p in zip(panels, places, strict=True)]
     exact = tuple(p for p in places if p is not None)
     return exact if len(exact) == len(panels) else None
 

@@ -33,8 +33,8 @@ from navsym.guaranteed.phases.neighbours import extend_forms, merge_regimes
 from navsym.guaranteed.phases.patterns import BRACKET, COUNT, PatternInterval, scan_patterns
 from navsym.guaranteed.phases.singular_values import (
     RegularInterval,
+    SingularValue,
     family_intervals,
-    imaginary_boundaries,
     need_range,
     real_intervals,
     singular_boundary,
@@ -358,7 +358,9 @@ def plan_range(
     for part in family_intervals(family, lower, upper):
         real, imaginary = real_intervals(*part)
         lost += [(end_text(one.lower), end_text(one.upper)) for one in imaginary]
-        edges += [b for one in imaginary for b in imaginary_boundaries(one, lower, upper, family.parameter.name)]
+        name = family.parameter.name
+        inside = ((end, one) for one in imaginary for end in (one.lower, one.upper) if end not in (lower, upper))
+        edges += [singular_boundary(SingularValue(end, one.in_words(name))) for end, one in inside]
         for one in real:
             ends = end_text(one[1]), end_text(one[2])
             found = limit.share(1 / 2).within(

@@ -89,9 +89,17 @@ def simple_place(values: Sequence[sp.Rational], parameters: Sequence[sp.Rational
 def recognise_place(
     family: Family, panel: int, values: Sequence[sp.Rational], parameters: Sequence[sp.Rational]
 ) -> sp.Expr | None:
-    """A place linear in the parameter or its reciprocal, else a fixed share of its panel."""
+    """A place linear in the parameter or its reciprocal, else a fixed share of its panel, else the middle of one.
+
+    The middle only where the regressors do not change on the panel: there one place is as good as another, and the
+    place of a search says nothing.
+    """
     found = simple_place(values, parameters, family.parameter)
-    return fixed_share(family, panel, values, parameters) if found is None else found
+    found = fixed_share(family, panel, values, parameters) if found is None else found
+    if found is not None or any(h.has(U) for h in family.rows[panel]):
+        return found
+    start, stop = family.panels[panel]
+    return (start + stop) / 2
 
 
 def fixed_share(
@@ -108,12 +116,3 @@ def fixed_share(
         shares.append(best)
     start, stop = family.panels[panel]
     return start + (stop - start) * shares[0] if len(set(shares)) == 1 else None
-
-
-def middle_of_constant(family: Family, panel: int) -> sp.Expr | None:
-    """The middle of a panel whose regressors do not change on it; None for other panels.
-
-    There one place is as good as another, and the place of a search says nothing.
-    """
-    start, stop = family.panels[panel]
-    return None if any(h.has(U) for h in family.rows[panel]) else (start + stop) / 2

@@ -322,12 +322,6 @@ def imaginary_root(family: Family, roots: set[sp.Expr], value: sp.Rational) -> s
     return min(negative, key=sp.default_sort_key, default=None)
 
 
-def imaginary_boundaries(part: ImaginaryInterval, lower: sp.Expr, upper: sp.Expr, name: str) -> list[Boundary]:
-    """The ends of an imaginary part inside the range, as boundaries."""
-    ends = [end for end in (part.lower, part.upper) if end not in (lower, upper)]
-    return [singular_boundary(SingularValue(end, part.in_words(name))) for end in ends]
-
-
 def is_above(x: sp.Expr, y: sp.Expr) -> bool:
     """x > y, by balls."""
     return x != y and bool(enclose(x - y) > 0)

@@ -17,15 +17,6 @@ from navsym.guaranteed.search.kernels import Array, Ints, chebyshev_derivative, 
 # A hint like all of the exchange: balls decide later whether ``|f| <= 1``.
 
 
-#: Nodes of the fine grid for each coefficient, and their bounds.
-PER_COEFFICIENT, LEAST, MOST = 12, 128, 20_000
-
-
-def fine_count(K: int) -> int:
-    """How many nodes find the maxima of a sum of K terms."""
-    return min(MOST, max(PER_COEFFICIENT * K, LEAST)) + 1
-
-
 @kernel
 def local_maxima(sums: Array, nodes: Array) -> tuple[Ints, Array, Array]:
     """Panel, place and ``|f|`` of the local maxima of ``|f|``, ends included; f has the coefficients (panels, K)."""

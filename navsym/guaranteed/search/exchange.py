@@ -17,7 +17,7 @@ import numpy as np
 
 from navsym.core.arrays import as_array
 from navsym.core.simplex import independent_rows, simplex
-from navsym.guaranteed.search.alternance import SAME, find_alternance, fine_count, local_maxima
+from navsym.guaranteed.search.alternance import SAME, find_alternance, local_maxima
 from navsym.guaranteed.search.kernels import Array, Ints, contact_system, differentiation, grid_values
 
 NEAR = 1e-7  # |f| above 1 - NEAR counts as touching
@@ -26,6 +26,7 @@ ROUNDS = 8
 VERTICES = 6
 SNAP = 1e-8  # an inner contact this near to an end of its panel stands on the end
 MOST_TOUCHES = 600
+PER_COEFFICIENT, LEAST, MOST = 12, 128, 20_000  # nodes that find the maxima of a sum, and their bounds
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -66,7 +67,7 @@ class Panels:
         """Nodes, values there and rows to start from, made at the first use."""
         nodes = search_nodes(self)
         grid = grid_values(self.coefficients, nodes)
-        fine = chebyshev_nodes(fine_count(self.coefficients.shape[1]))
+        fine = chebyshev_nodes(min(MOST, max(PER_COEFFICIENT * self.coefficients.shape[1], LEAST)) + 1)
         return SearchGrid(nodes, grid, independent_rows(grid, grid.shape[1]), fine)
 
 
