@@ -23,7 +23,7 @@ Frame = str | tuple[str, str] | None
 
 
 def list_meaningless(names: Names, sources: Sequence[Source], entries: Sequence[Entry]) -> list[tuple[str, str]]:
-    """Place and reason of every formula that the declared units and frames do not allow; none where none is declared."""
+    """Place and reason of every formula that the declared units and frames do not allow."""
     if not names.units and not names.frames:
         return []
     places, trees = zip(*list_formulas(sources, names), *list_sides(entries), strict=True)
@@ -43,11 +43,11 @@ def declare_unit(names: Names, name: str) -> Shape:
     return Shape(name, ((name,),), "scalar", {}, unit=unit)
 
 
-# Frames: code has the entries of vectors one by one, so that a term is in the frame of its one entry, turned by rotations
+# Frames: code has the entries of vectors one by one; a term is in the frame of its one entry, turned by rotations
 
 
 def frame_of(names: Names, name: str) -> Frame:
-    """The frame of an entry of a vector, both of an entry of a rotation; empty for a number, None where it is unknown."""
+    """What is declared of the frame of a symbol."""
     key = squeeze(names.spellings[name])
     said = names.frames.get(key) or names.frames.get(key.partition("[")[0])
     if said is None:
