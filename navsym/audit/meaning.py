@@ -47,7 +47,7 @@ def declare_unit(names: Names, name: str) -> Shape:
 
 
 def frame_of(names: Names, name: str) -> Frame:
-    """The frame of an entry of a vector, both of an entry of a rotation; None where it is unknown."""
+    """What is declared of the frame of a symbol."""
     key = squeeze(names.spellings[name])
     said = names.frames.get(key) or names.frames.get(key.partition("[")[0])
     if said is None:

@@ -13,8 +13,8 @@ from navsym.core.errors import DuplicateError, UnknownSymbolError
 from navsym.language.dimensions import infer_units
 from navsym.language.frames import infer_frames
 from navsym.language.names import join_place, quote, suggest_nearest
-from navsym.language.schema import Table, as_table
-from navsym.language.shapes import Shape, read_shape
+from navsym.language.schema import Table, as_table, expect_keys
+from navsym.language.shapes import NOTES, Shape, read_shape
 from navsym.language.tree import (
     MINUS_ONE,
     ONE,
@@ -52,6 +52,7 @@ def read_units(document: Table, names: Sequence[str], where: str) -> dict[str, S
             message = f"expected a state, a measurement, an input or t; got {quote(name)}; correct it: "
             raise UnknownSymbolError(message + suggest_nearest(name, sizes), where=here)
         said = dict(value) if isinstance(value, Mapping) else {"unit": value}
+        expect_keys(said, NOTES, here)
         size = {"vector": sizes[name]} if sizes[name] else {}
         found[name] = read_shape("x", size | said, (), here)[0]
     return found

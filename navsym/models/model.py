@@ -279,7 +279,7 @@ class Model:
         if not values:
             return self._contents
         with places_of_arguments():
-            return model_from(self._document, "Model", values)
+            return model_from(self._document, "Model", values, is_known=True)
 
     def with_values(self, **values: Any) -> Model:
         """The model with exact values in place of some parameters.

@@ -287,8 +287,13 @@ def read_model(path: str | os.PathLike[str], values: Mapping[str, Any] | None = 
     return model_from(read_toml(path), name_file(path), values)
 
 
-def model_from(document: Table, where: str = "", values: Mapping[str, Any] | None = None) -> ModelFile | BasisFile:
-    """Like :func:`read_model` for a document in memory, with the same errors."""
+def model_from(
+    document: Table, where: str = "", values: Mapping[str, Any] | None = None, *, is_known: bool = False
+) -> ModelFile | BasisFile:
+    """Like :func:`read_model` for a document in memory, with the same errors.
+
+    is_known : it has been read before, so that its units need not be looked at again
+    """
     declared, place = document.get("parameters"), join_place(where, "parameters")
     source, document = document, write_out(document, where)
     parameters = {
@@ -303,7 +308,7 @@ def model_from(document: Table, where: str = "", values: Mapping[str, Any] | Non
         expect_keys(document, TABLES, where)
         raise EmptyError("expected a [model] or a [basis]; got neither; add one", where=where)
     found = read_system(document, where, free, known)
-    if not values:
+    if not is_known:
         require_meaning(source, document, where)
     return found
 
@@ -451,7 +456,8 @@ def read_ranges(
 ) -> dict[str, tuple[Expr, Expr]]:
     """The [ranges] table: what the inputs of exported code may be; two exact numbers for each."""
     place, names = join_place(where, "ranges"), (*states, *parameters, STEP)
-    units = {n: u if isinstance(u, Mapping) else {"unit": u} for n, u in document.get("units", {}).items()}
+    said = as_table(document.get("units", {}), join_place(where, "units"))
+    units = {n: u if isinstance(u, Mapping) else {"unit": u} for n, u in said.items()}
     found = {}
     for name, value in as_table(document.get("ranges", {}), place).items():
         here = join_place(place, name)

@@ -88,6 +88,10 @@ def collect_notes(answer: Audit) -> Mapping[str, dict[int, list[Note]]]:
         for (source, line, note), places in alike.items():
             label = f"{question.name} {' '.join(places)}"
             notes[source].setdefault(line, []).append(replace(note, label=label))
+    for place, why in answer.meaningless:
+        source, _, number = place.rpartition(":")
+        if number.isdigit():
+            notes[source].setdefault(int(number), []).append(Note("REFUTED", "meaningless", why))
     for file in answer.files:
         for line, why in file.refused:
             notes[file.file].setdefault(line, []).append(Note("OPEN", "not read", why))

@@ -91,15 +91,14 @@ def conventions(
     document = {**model, **given}
     code = read_code(document, folder, where) if "code" in document else None
     source = code.document if code else read_entries(document, where)
-    written = code.document if code else write_out(source, where)
-    document = code.document if code else linearise(written, where)
+    written = source if code else write_out(source, where)
+    document = source if code else linearise(written, where)
     problem = read_problem(fill_model(document, where) if "card" in document else document, where)
     require_meaning(source, written, where)
     require_known(problem, join_place(where, "known"))
-    answer = find_conventions(problem)
-    words = as_table(document.get("card", {}), where).items()
-    cards = sorted(answer.cards, key=lambda found: sum(getattr(found, name) != word for name, word in words))
-    answer = replace(answer, cards=tuple(cards))  # the card of the file is first: conversions start from it
+    answer, words = find_conventions(problem), as_table(document.get("card", {}), where).items()
+    cards = (*sorted(answer.cards, key=lambda found: sum(getattr(found, name) != word for name, word in words)),)
+    answer = replace(answer, cards=cards)  # the card of the file is first: conversions start from it
     return answer if code is None else code.point_out(answer)
 
 

@@ -93,6 +93,17 @@ def test_numbers_in_place_of_symbols_make_no_alarm():
         assert nav.Model.from_document(filled.document()) == filled
 
 
+def test_values_do_not_hide_a_slip_of_the_file(tmp_path):
+    path = tmp_path / "model.toml"
+    nav.Model(**CHANNEL).save(path)
+    path.write_text(path.read_text(encoding="utf-8").replace("2*g/R", "2*g/R**2"), encoding="utf-8")
+    with pytest.raises(DomainError, match="one unit"):
+        nav.derive(path, g="9.81", R=6371000, T=1)
+    for units in ("m", {"height": 5}, {"height": {"range": ["0", "1"]}}):
+        with pytest.raises(NavsymError, match="units"):
+            nav.Model.from_document({**nav.Model(**CHANNEL).document(), "units": units})
+
+
 def test_numbers_of_a_file_may_be_quantities():
     nav.Model("h v", F=[["0", "1"], ["-1/600", "-1/10"]], H=["h"], units={"h": "m", "v": "m/s"})
     nav.Model("y1 y2", F=[["0", "-1"], ["1", "0"]], H=["y1"], units={"y1": "rad", "t": "1"})
