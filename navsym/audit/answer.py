@@ -28,7 +28,7 @@ from navsym.language.names import expect_keys, join_place, quote, require_path
 from navsym.language.printer import print_tree
 from navsym.language.schema import as_table, require_distinct, require_key
 from navsym.language.tomlfile import read_toml
-from navsym.language.tree import list_names
+from navsym.language.tree import Tree, list_names
 
 MOST = 200  # questions of a file
 LONGEST = 20_000  # characters of a formula that is shown
@@ -61,7 +61,7 @@ class AuditedEntry:
     suggestion     : of REFUTED, the mended right side of the assignment; the mended entry is proved
     why            : of OPEN, the reason; of a case, its conditions; of a weaker sense, what it says
     weaker         : of an entry that does not hold, a sense in which the whole question would hold
-    expected       : what the entry should be, in the symbols of the question; None in cases, and where it is not read
+    tree           : what the entry should be; None in cases, and where it is not read
     """
 
     entry: tuple[int, int]
@@ -75,7 +75,12 @@ class AuditedEntry:
     why: str = ""
     certificate: Mapping[str, Any] | None = None
     weaker: str | None = None
-    expected: str | None = None
+    tree: Tree | None = None
+
+    @property
+    def expected(self) -> str | None:
+        """What the entry should be, in the symbols of the question; None in cases, and where it is not read."""
+        return None if self.tree is None else print_tree(self.tree)
 
     def document(self) -> dict[str, Any]:
         """The entry as plain data."""
@@ -368,7 +373,7 @@ def write_answer(question: Question, entry: Entry, scope: Scope, decision: Decis
         if (mend := suggest(entry, scope, budget)) is not None:
             line, suggestion = mend.line, mend.text
         why = "; ".join(filter(None, (describe_case(entry), why)))
-    right = None if isinstance(entry.expected, Unread) or entry.conditions else print_tree(entry.expected.tree)
+    right = None if isinstance(entry.expected, Unread) or entry.conditions else entry.expected.tree
     return AuditedEntry(
         entry.place, *unit.locate(line), decision.status, decision.sense, point, decision.values, suggestion, why,
         decision.certificate, decision.weaker, right,
@@ -382,7 +387,7 @@ def describe_case(case: Entry | Case) -> str:
 
 def make_scope(names: Names, entry: Entry, relations: tuple[Any, ...]) -> Scope:
     """Ranges, relations and conditions under which an entry is decided; relations of other symbols do not count."""
-    trees = [cell.tree for cell in (entry.code, entry.expected) if isinstance(cell, Scalar)]
+    trees = [c.tree for c in (entry.code, entry.expected) if isinstance(c, Scalar)] if relations else []
     used = set(list_names(*trees, *(t for c in entry.conditions for t in (c.left, c.right) if t is not None)))
     near = tuple(relation for relation in relations if used & set(list_names(relation)))
     return Scope(names.ranges(), near, entry.conditions, rotations=tuple(names.rotations.values()))

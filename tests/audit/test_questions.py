@@ -139,7 +139,9 @@ def test_the_verb_prints_one_document_and_its_status_says_whether_code_is_refute
     assert run(["audit", str(spec), "--json", "--all"]) == 0
     document = json.loads(capsys.readouterr().out)
     (question,) = document["questions"]
-    assert set(question) == {"name", "kind", "status", "sense", "entries"} and len(question["entries"]) == 4
+    assert (
+        set(question) == {"name", "kind", "status", "sense", "entries", "assumptions"} and len(question["entries"]) == 4
+    )
     entry = question["entries"][1]
     assert (
         entry["entry"] == [1, 2] and entry["status"] == "PROVED" and entry["line"] == 7 and entry["suggestion"] is None
