@@ -1,5 +1,7 @@
-"""Random statements of calculus whose answer is made before the question: improper and iterated integrals, rates of
-integrals, finite and endless sums, limits at infinity, composed power series, exponentials of matrices.
+"""Random statements of calculus whose answer is made before the question.
+
+Improper and iterated integrals, finite and endless sums, limits at infinity, composed power series, exponentials of
+matrices.
 """
 
 from __future__ import annotations
@@ -8,7 +10,7 @@ import math
 import random
 from collections.abc import Callable, Sequence
 from fractions import Fraction
-from itertools import permutations
+from itertools import pairwise, permutations
 from typing import Any
 
 from tests.attacks.constructs import Construct, Scheme, at, draw_function, perturb
@@ -96,7 +98,9 @@ def iterated_integrals(rng: random.Random) -> Construct:
 def partial_derivatives(rng: random.Random) -> Construct:
     """Mixed derivatives of a function of two symbols, in either order, and of a quotient of two."""
     f, g = draw_function(rng, 2), draw_function(rng, 1).replace("x", "y").replace("eyp", "exp")
-    tree = read(rng.choice((f"({f})*({g})", f"({f})/(2 + y**2)", f"sin(x*y) + ({f})", f"exp(x - y**2)*({g})", f"(x*y + 3)**4")))
+    tree = read(
+        rng.choice((f"({f})*({g})", f"({f})/(2 + y**2)", f"sin(x*y) + ({f})", f"exp(x - y**2)*({g})", "(x*y + 3)**4"))
+    )
     names = rng.sample("xy", 2)
     slope = derivative(derivative(tree, names[0]), names[1])
     right, truth = perturb(write(slope), rng)
@@ -122,7 +126,7 @@ def interpolate(values: Sequence[Fraction], first: int) -> str:
     for k in range(len(values)):
         text.append(f"({differences[0] / math.factorial(k)})*{factor}")
         factor = f"{factor}*(n - ({first + k}))"
-        differences = [q - p for p, q in zip(differences, differences[1:], strict=False)]
+        differences = [q - p for p, q in pairwise(differences)]
     return " + ".join(text)
 
 
@@ -199,7 +203,10 @@ def far_limits(rng: random.Random) -> Construct:
         bottom[-1] = bottom[-1] or Fraction(1)
         side = rng.choice(("oo", "-oo"))
         top += [Fraction(0)] * (degree + 1 - len(top))
-        text, value = f"({write_polynomial(top, 'x')})/({write_polynomial(bottom, 'x')}), x, {side}", str(top[-1] / bottom[-1])
+        text, value = (
+            f"({write_polynomial(top, 'x')})/({write_polynomial(bottom, 'x')}), x, {side}",
+            str(top[-1] / bottom[-1]),
+        )
     elif kind == "decay":
         body = rng.choice(("x**{m}*exp(-{n}*x)", "atan(x)**0*exp(-x/{n})", "log(x)/x**{n}", "{m}/sqrt(x + {n})",
                            "exp(-{n}*x)*sin({m}*x)", "log(x + {n}) - log(x + {m})"))  # fmt: skip
@@ -209,8 +216,9 @@ def far_limits(rng: random.Random) -> Construct:
         text, value = f"(({at(f, 'y + h')}) - ({at(f, 'y')}))/h, h, 0", at(write(derivative(read(f), "x")), "y")
     else:  # a root of both polynomials
         p, c = draw_polynomial(rng, rng.randint(0, 3)), rng.randint(-3, 3)
-        text, value = f"(x - ({c}))*({write_polynomial(p, 'x')})/((x - ({c}))*(x**2 + 1)), x, {c}", str(
-            evaluate(p, Fraction(c)) / (c * c + 1)
+        text, value = (
+            f"(x - ({c}))*({write_polynomial(p, 'x')})/((x - ({c}))*(x**2 + 1)), x, {c}",
+            str(evaluate(p, Fraction(c)) / (c * c + 1)),
         )
     right, truth = perturb(value, rng)
     return Construct(f"limit({text}) = {right}", truth, GIVEN)
@@ -264,7 +272,7 @@ def draw_series(rng: random.Random, depth: int) -> tuple[str, Series]:
 
 @scheme
 def composed_orders(rng: random.Random) -> Construct:
-    """Functions of functions, sums and products of them, against their series up to an order, or one coefficient off."""
+    """Functions of functions, sums and products of them, against their series, or one coefficient off."""
     (first, p), (second, q) = draw_series(rng, rng.randint(1, 2)), draw_series(rng, 1)
     text, series = rng.choice(
         (
@@ -289,7 +297,10 @@ def write_rows(rows: Sequence[Sequence[Any]]) -> str:
 
 
 def multiply(x: list[list[Fraction]], y: list[list[Fraction]]) -> list[list[Fraction]]:
-    return [[sum((p * q for p, q in zip(row, column, strict=True)), Fraction(0)) for column in zip(*y, strict=True)] for row in x]
+    return [
+        [sum((p * q for p, q in zip(row, column, strict=True)), Fraction(0)) for column in zip(*y, strict=True)]
+        for row in x
+    ]
 
 
 @scheme

@@ -77,7 +77,6 @@ def run(seed: int, seconds: float, out: Path, schemes: Mapping[str, Scheme] = SC
     """Judge statements for so many seconds by the clock."""
     counts = {name: Counter[str]() for name in schemes}
     spent, start = dict.fromkeys(schemes, 0.0), time.monotonic()
-    signal.signal(signal.SIGTERM, lambda *_: sys.exit(0))  # the counts are written all the same
     with out.open("a", encoding="utf-8") as log:
         try:
             while time.monotonic() < start + seconds:
@@ -119,4 +118,5 @@ if __name__ == "__main__":
     if sys.argv[1] == "table":
         print(make_table([*map(Path, sys.argv[2:])]))
     else:
+        signal.signal(signal.SIGTERM, lambda *_: sys.exit(0))  # the counts are written all the same
         run(int(sys.argv[1]), float(sys.argv[2]), Path(sys.argv[3]))

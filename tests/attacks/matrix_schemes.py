@@ -540,7 +540,8 @@ ANY_LAWS: tuple[tuple[Tree, Tree], ...] = (
     (["trace", chain("S", "W")], ["num", "0", "2"]),
     (["dot", "x", chain("W", "x")], ["num", "0", "2"]),
     (["dot", "x", chain("K", "y")], ["dot", chain([T, "K"], "x"), "y"]),
-    (chain([SUB, "eye(n)", "W"], [INV, [ADD, "eye(n)", "W"]]), chain([INV, [ADD, "eye(n)", "W"]], [SUB, "eye(n)", "W"])),
+    (chain([SUB, "eye(n)", "W"], [INV, [ADD, "eye(n)", "W"]]),
+     chain([INV, [ADD, "eye(n)", "W"]], [SUB, "eye(n)", "W"])),
 )  # fmt: skip
 
 
@@ -592,7 +593,9 @@ def rate_of(tree: Tree, rates: Mapping[str, Tree]) -> Tree | None:
         return slopes[0] and [name, slopes[0]]
     if name in ("add", "sub"):
         left, right = slopes
-        return [name, left, right] if left and right else left or (right and (right if name == "add" else ["neg", right]))
+        return (
+            [name, left, right] if left and right else left or (right and (right if name == "add" else ["neg", right]))
+        )
     terms = [
         [name, *(slope if i == k else part for i, part in enumerate(parts))] for k, slope in enumerate(slopes) if slope
     ]
@@ -603,8 +606,17 @@ def rate_of(tree: Tree, rates: Mapping[str, Tree]) -> Tree | None:
 def rates(rng: random.Random) -> Construct:
     """dot_ of a tree, by rates that are given or by functions of the time, against dual numbers."""
     n = rng.choice((2, 3))
-    leaves = {"A": leaf((n, n)), "B": leaf((n, n)), "u": leaf((n, 1)), "v": leaf((n, 1)), "a": leaf("s"), "b": leaf("s")}
-    known = {"add", "sub", "mul", "scale", "num", "flip", "dot", "trace", "entry"} | ({"cross", "skew"} if n == 3 else set())
+    leaves = {
+        "A": leaf((n, n)),
+        "B": leaf((n, n)),
+        "u": leaf((n, 1)),
+        "v": leaf((n, 1)),
+        "a": leaf("s"),
+        "b": leaf("s"),
+    }
+    known = {"add", "sub", "mul", "scale", "num", "flip", "dot", "trace", "entry"} | (
+        {"cross", "skew"} if n == 3 else set()
+    )
     known |= {"inv"} if n == 2 else set()
     garden = Garden(leaves, (n,), frozenset(known))
     given: dict[str, Any] = {name: one.declared for name, one in leaves.items()}
@@ -634,7 +646,9 @@ def rates(rng: random.Random) -> Construct:
 def draw_moving(rng: random.Random, leaves: Mapping[str, Leaf], own: Mapping[str, Tree]) -> dict[str, Value]:
     """Plain values of all leaves and of their rates, and the dual numbers made of both."""
     point = draw_point(rng, leaves, {})
-    point |= {f"dot_({name})": draw_any(rng, leaves[name].kind) for name, tree in own.items() if tree == f"dot_({name})"}
+    point |= {
+        f"dot_({name})": draw_any(rng, leaves[name].kind) for name, tree in own.items() if tree == f"dot_({name})"
+    }
     duals: dict[str, Value] = {"dual": True}
     for name, one in point.items():
         slope = value_of(own[name], point) if name in own else each(lambda _: Fraction(0), one)

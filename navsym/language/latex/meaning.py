@@ -19,6 +19,7 @@ SUM, PRODUCT, POWER, WHOLE = range(4)
 SCALAR: Shape = ()
 WAVES = ("sin", "cos", "tan")
 WRITE = "write parentheses"
+CALLING = ("(", "[", "{<")
 
 
 @dataclass(frozen=True, slots=True)
@@ -213,21 +214,25 @@ class Explainer:
         return scale(whole, [f for m, f in scalars if m != "/"], [f for m, f in scalars if m == "/"])
 
     def drop_variables(self, args: tuple[Any, ...]) -> tuple[Any, ...]:
-        """``x(t)`` of a declared function of t is the name x; another name before one name in brackets is refused."""
+        """``x(t)`` of a declared function of t is the name x, and ``x(t)^2`` its square.
+
+        Another name before one name in brackets is refused, and a function of t before what else holds t.
+        """
         kept: list[Any] = [args[0]]
         for mark, factor in zip(args[1::2], args[2::2], strict=True):
             before = kept[-1].args[0] if kept[-1].head in ("dot", "^") else kept[-1]
-            single = (
-                factor.head == "()" and factor.args[0] in ("(", "[", "{<") and factor.args[1].head in ("name", "num")
-            )
-            if mark == "" and single and before.head in ("name", "index"):
-                name, inner = before.args[0], factor.args[1].args[0]
-                if self.notation.functions.get(name) == inner and kept[-1].head != "^":
+            group = factor.args[0] if factor.head == "^" else factor
+            if mark == "" and before.head in ("name", "index") and group.head == "()" and group.args[0] in CALLING:
+                name, inside = before.args[0], group.args[1]
+                variable, inner = self.notation.functions.get(name), inside.args[0]
+                is_single = inside.head in ("name", "num")
+                if is_single and variable == inner and kept[-1].head != "^":
+                    kept[-1] = kept[-1] if factor is group else replace(factor, args=(kept[-1], *factor.args[1:]))
                     continue
-                question = f"is {name}({inner}) a product or a function?"
-                raise Refusal(
-                    factor.at, "a product that is plain", question, r"write \cdot, or name the value in [latex]"
-                )
+                if is_single or variable in list_names(inside):
+                    question = f"is {name}({inner if is_single else '...'}) a product or a function?"
+                    remedy = r"write \cdot, or name the value in [latex]"
+                    raise Refusal(group.at, "a product that is plain", question, remedy)
             kept += [mark, factor]
         return tuple(kept)
 

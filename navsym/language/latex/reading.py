@@ -27,6 +27,11 @@ from navsym.language.tomlfile import toml_text
 SIZE = 4_000_000  # bytes of a document
 FORMULAS = 20_000
 SIGNS = {"<=": r"\le", ">=": r"\ge", "!=": r"\neq"}
+#: An upright word, and a number before it.
+UPRIGHT = re.compile(
+    r"(?P<number>\d(?:\s|~|\\[,;: ]|\\quad)*)?"
+    r"(?P<word>\\(?:text|textrm|mathrm)\s*\{\s*(?P<name>[A-Za-z]+)\s*\})(?![_(])"
+)
 BOLD = re.compile(r"(?:\\[a-z]+\s*\{\s*)*\\(?:mathbf|boldsymbol|bm)\s*\{?\s*(\\?[A-Za-z]+)")
 #: A whole power of e, which may be a name.
 EXPONENT = re.compile(r"(?<![A-Za-z\\])e\s*\^\s*(?:\{\s*)?\d")
@@ -405,6 +410,7 @@ def read_sides(
     parts: list[Part] = []
     for side in (relation.left, relation.right):
         with shifted(side.start):
+            refuse_units(side.text, notation)
             parts.append(descend(side.text, notation, faces))
         unknown += list_unknown(parts[-1])
     if unknown:
@@ -444,6 +450,20 @@ def read_sides(
     if order is not None and relation.sign != "=":
         raise Refusal(relation.right.start, "= before O(x^k)", relation.sign, "write an equation")
     return (first_term.text, second_term.text), tuple(used), order
+
+
+def refuse_units(text: str, notation: Notation) -> None:
+    r"""Refuse ``9.8\,\text{m}`` and ``\mathrm{i} x`` where m and i are declared names, and commas in numbers."""
+    for found in UPRIGHT.finditer(text):
+        name, kind = found["name"], "a unit" if found["number"] else "the imaginary unit"
+        if name not in notation or not (found["number"] or name in ("i", "j")):
+            continue
+        if not any(found["word"] in spelling for _, spelling in notation.spellings):
+            remedy = f"write {name} = '{found['word']}' in [latex] where it is the name"
+            raise Refusal(found.start("word"), "one meaning", f"is {name} a name or {kind}?", remedy)
+    if comma := re.search(r"\d\{,\}\d", text):
+        got = f"{comma[0]}: a decimal comma, or thousands?"
+        raise Refusal(comma.start(), "a number with a point or without", got, "write it so")
 
 
 class shifted:

@@ -408,6 +408,10 @@ def test_a_document_of_definitions_has_no_claim():
         nav.read("$x = y$", symbols={"x": "real", "y": "real"}).claims(definitions=True)
 
 
+def test_the_skeleton_asks_whether_letters_with_an_index_are_a_product():
+    assert r"Is \mathbf{Bu}_{t} a product or a name?" in nav.read(r"\mathbf{x} = \mathbf{Bu}_t").declarations()
+
+
 def test_the_skeleton_has_whole_numbers_at_the_ends_of_sums_and_asks_what_e_is():
     skeleton = nav.read(r"\sum_{k=1}^{n} e^2 k = y").declarations()
     assert 'n = { integer = ["1", "oo"] }' in skeleton and 'y = "real"' in skeleton and "declare e where" in skeleton

@@ -61,6 +61,52 @@ def test_the_unit_matrix_has_the_size_that_its_neighbours_give_it():
     assert "eye = '\\mathbf{I}' in [latex]" in formula.why
 
 
+MOVING = {"f": {"function": "t"}, "A": {"matrix": [2, 2], "function": "t"}, "u": {"vector": 3, "function": "t"}}
+MOVING |= dict.fromkeys("abmtxy", "real") | {"i": {"integer": ["1", "oo"]}}
+
+
+@pytest.mark.parametrize(
+    ("latex", "text"),
+    [
+        ("f(t)^2", "f**2"),
+        ("a f(t)^2 x", "a*f**2*x"),
+        (r"\dot{f}(t)^2", "dot_(f)**2"),
+        (r"A(t)^{-1}", "inv(A)"),
+        ("u(t)^T u(t)", "dot(u, u)"),
+        ("f(a + b)", "f*(a + b)"),
+        ("f(t)(a + b)", "f*(a + b)"),
+    ],
+)
+def test_a_power_behind_the_value_of_a_function_is_the_power_of_the_value(latex, text):
+    (formula,) = nav.read(f"{latex} = {latex}", symbols=MOVING).formulas
+    assert (formula.left, formula.right) == (text, text), formula.why
+
+
+@pytest.mark.parametrize("latex", ["a(x)^2", "f(t + a)", "f(2t)", r"f(t - \frac{a}{b})"])
+def test_a_power_behind_what_may_be_a_value_is_asked_about(latex):
+    (formula,) = nav.read(f"y = {latex}", symbols=MOVING).formulas
+    assert formula.status == "REFUSED" and "a product or a function?" in formula.why
+
+
+@pytest.mark.parametrize(
+    ("latex", "question"),
+    [
+        (r"9.81\,\text{m}", "is m a name or a unit?"),
+        (r"2\mathrm{m} x", "is m a name or a unit?"),
+        (r"e^{\mathrm{i} x}", "is i a name or the imaginary unit?"),
+        ("3{,}14 x", "a decimal comma, or thousands?"),
+    ],
+)
+def test_units_and_commas_of_numbers_are_asked_about(latex, question):
+    (formula,) = nav.read(f"y = {latex}", symbols=MOVING).formulas
+    assert formula.status == "REFUSED" and question in formula.why
+
+
+def test_an_upright_name_of_the_table_may_stand_behind_a_number():
+    (formula,) = nav.read(r"y = 3\,\mathrm{m}", symbols=MOVING, latex={"m": r"\mathrm{m}"}).formulas
+    assert formula.text == "y = 3*m"
+
+
 def test_a_display_without_its_equation_is_read():
     for name in ("aligned", "gathered", "split", "align"):
         formulas = nav.read(rf"\begin{{{name}}} a &= b \\ c &= a \end{{{name}}}", symbols=dict.fromkeys("abc", "real"))
