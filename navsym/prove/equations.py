@@ -10,10 +10,11 @@ from collections.abc import Sequence
 from dataclasses import replace
 
 import sympy as sp
+from flint import arb
 
 from navsym.claims.statement import Box, Equation
 from navsym.claims.verdict import CERTIFIED, CONFIRMED, OPEN, PROVED, REFUTED, Verdict
-from navsym.core.balls import UnsupportedError, enclose, exact_ball
+from navsym.core.balls import UnsupportedError, enclose, exact_ball, precision
 from navsym.prove.assumptions import add_sides, conditions_as_written, remaining_assumptions
 from navsym.prove.identities.normal_form import OutsideLanguageError, UndefinedExpressionError, reduce_to_zero
 from navsym.prove.identities.numbers import is_zero
@@ -111,12 +112,12 @@ def decide_numeral(printed: sp.Expr, derived: sp.Expr, statement: Equation) -> V
     """``|printed - derived| <= tolerance``, the meaning of a printed numeral."""
     tolerance = sp.sympify(statement.tolerance, strict=True)
     difference, box = printed - derived, statement.box
-    sample = search_counterexample(
-        difference,
-        lambda ball: bool(abs(ball) > enclose(tolerance)),
-        box,
-        sides=finite_sides(printed, derived, statement),
-    )
+
+    def is_beyond(ball: arb) -> bool:
+        with precision(BITS):  # abs rounds to the working precision, which hides an excess of 1e-30
+            return bool(abs(ball) > enclose(tolerance, bits=BITS))
+
+    sample = search_counterexample(difference, is_beyond, box, sides=finite_sides(printed, derived, statement))
     if sample.counterexample is not None:
         return refute_by_sample(sample)
     if sample.points == 0:  # what exists nowhere is near to everything
@@ -129,7 +130,7 @@ def decide_numeral(printed: sp.Expr, derived: sp.Expr, statement: Equation) -> V
             continue
         look = look_again(
             difference,
-            lambda ball: bool(abs(ball) > enclose(tolerance, bits=BITS)),
+            is_beyond,
             box,
             finite_sides(printed, derived, statement),
             goals=(tolerance - difference, tolerance + difference),

@@ -406,6 +406,20 @@ def cases(rng: random.Random) -> Construct:
 
 
 @construct
+def strips(rng: random.Random) -> Construct:
+    """A case that says too much on a strip between two parallel planes, or nothing wrong where it is empty."""
+    a, b, c = (rng.randint(-4, 4) or 1 for _ in range(3))
+    side, other, tiny = f"{a}*x + {b}*y", f"{c}*x - {a}*y + 1", f"1e-{rng.choice((3, 12, 20, 40))}"
+    truth = rng.random() < 0.3
+    text = rng.choice((
+        f"where({side} < {other}{'' if truth else ' + ' + tiny}, {side}, {other}) = min({side}, {other})",
+        f"max({side}, {other}{'' if truth else ' - ' + tiny}) = where({side} > {other}, {side}, {other})",
+        f"max({side}, -({side}){'' if truth else ' + ' + tiny}) = abs({side})",
+    ))  # fmt: skip
+    return Construct(text, truth, {"x": "real", "y": "real"})
+
+
+@construct
 def whole_parts(rng: random.Random) -> Construct:
     """floor(p x + q) = k on a closed range."""
     p, q = rng.choice((1, 2, -1, Fraction(1, 2))), Fraction(rng.randint(-9, 9), rng.randint(1, 4))

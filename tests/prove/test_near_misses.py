@@ -91,3 +91,26 @@ def test_peaks_and_dips_are_found_before_anything_is_confirmed(text, symbols):
 def test_an_error_inside_the_search_is_no_verdict_of_its_own():
     verdict = nav.prove("sum(x**k, k, 0, oo) = 1/(1 - x)", x=("-1/2", "1/2"))
     assert verdict.status == nav.OPEN and "symbolic power" not in verdict.evidence
+
+
+@pytest.mark.parametrize("excess", ["1e-18", "1e-30", "1e-300"])
+def test_a_constant_excess_over_the_tolerance_is_never_within_it(excess):
+    assert nav.prove("x = x + 1/1000", tolerance="1/1000").holds
+    assert nav.prove("x = x + 1/1000", tolerance=f"1/1000 - {excess}").status == REFUTED
+
+
+@pytest.mark.parametrize(
+    ("text", "given", "symbols"),
+    [
+        ("max(x, -x) = x", (), {"x": ("-1e-40", "7")}),
+        ("where(x + 2*y < z + 1e-20, x + 2*y, z) = min(x + 2*y, z)", (), {}),
+        ("x = y", ("x <= y", "y <= x + 1e-40"), {}),
+        ("x = 1", ("x > 1 - 1e-30", "x < 1 + 1e-30"), {}),
+    ],
+)
+def test_what_fails_on_a_strip_is_refuted_however_thin_the_strip_is(text, given, symbols):
+    assert nav.prove(text, given=given, **symbols).status == REFUTED
+
+
+def test_an_order_that_is_lost_by_a_tiny_coefficient_is_refuted():
+    assert nav.prove("exp(eps) = 1 + eps + 1e-20*eps", order={"eps": 2}).status == REFUTED

@@ -17,10 +17,11 @@ from flint import arb, ctx, fmpq
 
 from navsym.claims.formula import Formula
 from navsym.claims.verdict import CERTIFIED, OPEN, PROVED, REFUTED, Verdict
+from navsym.core.balls import precision
 from navsym.core.errors import NavsymError
 from navsym.prove.calculus.answers import MOST_POINTS, read_with_answers
 from navsym.prove.grant import BITS, IDENTITY, REFUSALS, Document, grant, refute_document, withdraw, write_point
-from navsym.prove.relations.points import Rows, draw_corner_points, draw_special_points
+from navsym.prove.relations.points import Rows, cross_cell, draw_corner_points, draw_special_points
 from navsym.prove.rooms.goals import as_term, player, subterms, to_sympy, write_term
 from navsym.prove.search import EASY, find_proof, rules_of
 from navsym.prove.wording import decimal_ends, expression_text
@@ -28,6 +29,7 @@ from navsym.prove.words.judge import decide_words
 
 POINTS = 16
 EDGES = 6  # absolute values and conditions of a case that are 0 at some points
+LINES = 3  # across each case: a strip may be thinner than the distance of all other points
 FAR = (1, 8, 30, 100, 399)  # whole numbers at which sums are written out
 FEW = 4  # points at which an exact zero is sought
 PRECISIONS = (64, 512)
@@ -131,13 +133,17 @@ def list_points(claim: TextClaim, cases: Sequence[Any], box: Mapping[str, Any]) 
         met = [*dict.fromkeys((*bends, *case.given))][: EDGES if box else 0]
         pairs = combinations(case.given[:EDGES], 2)  # where two hypotheses >= 0 meet, bounds are attained
         edges = (draw_special_points(here, (*case.zeros, *ends), kinds, 2) for ends in (*((t,) for t in met), *pairs))
-        for point in chain(draw_special_points(here, case.zeros, kinds, count), corners, *edges):
+        lines = cross_cell(here, case.given, LINES if box and case.given else 0)
+        for point in chain(draw_special_points(here, case.zeros, kinds, count), corners, *edges, lines):
             place = {name: as_term(value) for name, value in point.items()}
             try:
-                if all(player.is_inside(place[name], box[name]) for name in box) and player.lies_in(case, place):
-                    yield point, case
+                with precision(PRECISIONS[-1]):  # a strip of 1e-40 has an inside
+                    inside = all(player.is_inside(place[name], box[name]) for name in box)
+                    inside = inside and player.lies_in(case, place)
             except (*REFUSALS, ArithmeticError):
                 continue
+            if inside:
+                yield point, case
 
 
 def find_failure(points: Sequence[tuple[dict[str, Any], Any]]) -> dict[str, Any] | None:
@@ -200,7 +206,8 @@ def describe_lost_order(document: Document, point: Mapping[str, Any], shown: Map
     """What a refuted order says: the lowest derivative that differs at 0. Its value is no left - right."""
     ((name, order),) = document["order"].items()
     (case, *_), _, _ = read_with_answers(document, {n: as_term(value) for n, value in point.items()})
-    values = [player.value_of(goal.term, evaluate_point(case, point)) for goal in case.goals]
+    with precision(PRECISIONS[-1]):
+        values = [player.value_of(goal.term, evaluate_point(case, point)) for goal in case.goals]
     low = min(i % order for i, value in enumerate(values) if player.FAILURES["="](value))
     words = f"left - right is no O({name}**{order}): both sides differ in the derivative of order {low} at {name} = 0"
     return {"method": f"derivative of order {low} at 0", "evidence": words, "counterexample": {**shown, name: "0"}}

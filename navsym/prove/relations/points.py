@@ -22,6 +22,7 @@ from navsym.prove.rooms.goals import as_term, draw_points, player
 #: Rational numbers, and terms for the symbols that hypotheses give: ``W`` by ``W = sqrt(1 - e**2)``.
 Point = dict[str, Any]
 Rows = Sequence[Sequence[str]]
+SHARE = fmpq(3, 8)  # of a crossed strip; its middle may be where sides agree
 
 
 def draw_special_points(
@@ -77,6 +78,38 @@ def draw_corner_points(box: Mapping[str, Any], kinds: Mapping[str, tuple[str, Ro
                 far = place + 1 if kind == "vector" and value == 2 else value or 1  # 2: one behind the other on a line
                 point.update({name: fmpq(far * (k == (value < 0))) for k, name in enumerate(entries)})
         yield point
+
+
+def cross_cell(box: Mapping[str, Any], given: Sequence[Any], count: int) -> Iterator[Point]:
+    """Points of lines inside all half-spaces of a case: a strip of any width is crossed.
+
+    Other terms than linear ones are left out. The box bounds the lines as well.
+    """
+    generator = random.Random(2)
+    for _ in range(count):
+        start, step = ({n: draw_number(limit, generator) for n, limit in box.items()} for _ in range(2))
+        slopes = [slope_along(term, start, step) for term in given]
+        for sign, end in ((1, "low"), (-1, "high")):
+            bounds = {n: player.constant_of(getattr(r, end)) for n, r in box.items() if getattr(r, end) is not None}
+            slopes += [(sign * (start[n] - b), sign * step[n]) for n, b in bounds.items() if b is not None]
+        roots = [(slope > 0, -value / slope) for value, slope in filter(None, slopes) if slope != 0]
+        low = max((root for rising, root in roots if rising), default=None)
+        high = min((root for rising, root in roots if not rising), default=None)
+        first = (fmpq(0) if high is None else high - 2) if low is None else low
+        last = (first + 2) if high is None else high
+        yield {name: start[name] + (first + (last - first) * SHARE) * step[name] for name in box}
+
+
+def slope_along(term: Any, start: Point, step: Point) -> tuple[fmpq, fmpq] | None:
+    """Value and slope of a term that is linear along a line, as far as three of its points tell."""
+    places = [{n: as_term(start[n] + k * step[n]) for n in player.symbols_of(term) & set(start)} for k in range(3)]
+    try:
+        values = [player.constant_of(player.substitute(term, place)) for place in places]
+    except (player.Refused, ArithmeticError):
+        return None
+    if None in values or values[0] + values[2] != 2 * values[1]:
+        return None
+    return values[0], values[1] - values[0]
 
 
 def draw_number(limit: Any, generator: random.Random) -> fmpq:

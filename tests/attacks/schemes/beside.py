@@ -21,7 +21,8 @@ def make_tolerance(rng: random.Random) -> Statement:
     d, unit = draw_tiny(rng, 3, 25), {"x": ["0", "1"]}
     third = digits_of("1 - sin(1)", 12)
     text, tolerance, truth, at = rng.choice((
-        (f"x = x + {d}", d, True, ""), (f"x = x + {d}", f"0.9*{d}", False, "0"), ("x**2 = x", "1/4", True, ""),
+        (f"x = x + {d}", d, True, ""), (f"x = x + {d}", f"0.9*{d}", False, "0"),
+        ("x = x + 1", f"1 - {d}*1e-9", False, "0"), ("x**2 = x", "1/4", True, ""),
         ("x**2 = x", f"1/4 - {d}", False, "1/2"), ("sin(x) = x", f"{third} + 1e-11", True, ""),
         ("exp(x) = 1 + x", "0.7", False, "1"),
         ("sin(x) = x", f"{third} - 1e-11", False, "1"), ("cos(x) = 1", "1 - cos(1)", True, ""),
