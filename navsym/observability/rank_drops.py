@@ -293,12 +293,12 @@ class View:
     def is_vague(self, system: System) -> bool:
         """True where functions may depend on each other: exp(a t) and exp(w t) are one where a = w, sin(w) is no w."""
         ring = self.motion.ring
-        named = {s for text in ring.meaning.values() for s in text.free_symbols} | {a.symbol for a in ring.angles}
-        held = {ring.places[s] for s in named if s in ring.places}
+        named = {s for text in ring.meaning.values() for s in text.free_symbols}
+        held = {ring.places[s] for s in named | {a.symbol for a in ring.angles} if s in ring.places}
         mixed = [f for f in system if len(f) > 1 and any(f.degrees()[place] for place in held)]
         numbers = not ring.meaning and len(mixed) == 1 and sum(map(bool, mixed[0].degrees())) == 1
         zero = {s for s, place in ring.places.items() if any(f == ring.context.gen(place) for f in system)}
-        sines = [ring.halves(a)[0] for a in ring.angles if a.symbol in ring.places and a.symbol not in zero]
+        sines = [ring.halves(a)[0] for a in ring.angles if a.symbol in (named | ring.places.keys()) - zero]
         turns = any(is_divisor(S, f) for S in sines for f in system)  # w = 0 is one of many points
         return turns or (bool(mixed) and not numbers)  # sin(w) is transcendental for algebraic w != 0 (Lindemann)
 

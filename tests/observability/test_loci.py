@@ -241,6 +241,9 @@ def test_an_exponential_is_one_only_where_its_exponent_is_zero():
     model = LinearModel([[0, sp.exp(w) - 1], [0, 0]], None, [[w, 0], [sp.exp(2 * w) - 1, 0]])
     listed = [(d.condition, d.rank) for d in rank_drops(observe_jointly(model)) if d.subspace == "joint"]
     assert listed == [("w = 0", 0)]
+    turned = observe_jointly(LinearModel([[0, 0], [sp.tan(w), 0]], None, [[0, sp.exp(w) - 1]]))
+    ranks = {d.condition: d.rank for d in rank_drops(turned) if d.subspace == "joint"}
+    assert ranks["sin(w) = 0"] is None
 
 
 def test_a_drop_at_one_end_of_the_circle_is_found_with_half_the_angle():
