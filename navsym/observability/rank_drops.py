@@ -24,8 +24,8 @@ from navsym.observability.cases import drops_by_cases
 from navsym.observability.chains import Chain, Chains, JointObservability
 from navsym.observability.linear import Matrix
 from navsym.observability.motion import Motion
-from navsym.observability.reduction import System, components, irredundant, krylov_remainder
-from navsym.observability.ring import Hashed, Poly, Ring, irreducible_factors, is_odd
+from navsym.observability.reduction import System, components, irredundant, is_nowhere, krylov_remainder, lies_in_ideal
+from navsym.observability.ring import Hashed, Poly, Ring, irreducible_factors, is_divisor, is_odd
 from navsym.observability.tree import SPLIT_TERMS, Leaf, is_covered, leaf_on, lost_columns, named_values, search_drops
 from navsym.prove.assumptions import is_nonzero
 
@@ -148,8 +148,8 @@ def newton(bound: int) -> fmpz_mat:
 MOST_STAIRCASES, LAST_TERMS = 40, 40_000
 #: Drops inside drops inside drops are looked for so deep; more directions have too many terms to be read.
 NESTED, DIRECTION_TERMS = 3, 60
-#: Nodes looked at for the rank on one system.
-FEW = 12
+#: Nodes looked at for the rank on one system, and terms of a zero that declarations may exclude.
+FEW, LIMITED_TERMS = 12, 60
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -242,8 +242,10 @@ class View:
         return RankDrop(self.subspace, zeros, self.complete, excluded=excluded, **more)
 
     def is_limited(self, zero: sp.Expr) -> bool:
-        """True when something is declared of a symbol beside that it is real."""
-        return any(symbol in self.box or symbol.is_nonzero for symbol in zero.free_symbols)
+        """True for a short zero with a symbol of which something is declared beside that it is real."""
+        return len(zero.args) <= LIMITED_TERMS and any(
+            symbol in self.box or symbol.is_nonzero for symbol in zero.free_symbols
+        )
 
     def list_drops(self, systems: list[System], depth: int, known: Sequence[Leaf]) -> list[RankDrop]:
         """Drops on some systems, each with its rank, its lost directions, and the drops inside it.
@@ -252,9 +254,9 @@ class View:
         """
         ring = self.motion.ring
         listed = []
-        for system in join_half_angles(systems, ring):
+        for system in join_half_angles(with_values(systems, ring), ring):
             zeros = conditions_on(system, ring)
-            if not zeros:
+            if not zeros or is_nowhere(system, ring):
                 continue
             leaves = () if self.is_vague(system) else self.leaves_on(system) or self.leaves_below(system, known)
             if not leaves:
@@ -289,10 +291,16 @@ class View:
         return []
 
     def is_vague(self, system: System) -> bool:
-        """True where functions may depend on each other: exp(a t) and exp(w t) are one where a = w."""
+        """True where functions may depend on each other: exp(a t) and exp(w t) are one where a = w, sin(w) is no w."""
         ring = self.motion.ring
-        held = {ring.places[s] for text in ring.meaning.values() for s in text.free_symbols if s in ring.places}
-        return any(len(f) > 1 and f.degrees()[place] for f in system for place in held)
+        named = {s for text in ring.meaning.values() for s in text.free_symbols}
+        held = {ring.places[s] for s in named | {a.symbol for a in ring.angles} if s in ring.places}
+        mixed = [f for f in system if len(f) > 1 and any(f.degrees()[place] for place in held)]
+        numbers = not ring.meaning and len(mixed) == 1 and sum(map(bool, mixed[0].degrees())) == 1
+        zero = {s for s, place in ring.places.items() if any(f == ring.context.gen(place) for f in system)}
+        sines = [ring.halves(a)[0] for a in ring.angles if a.symbol in (named | ring.places.keys()) - zero]
+        turns = any(is_divisor(S, f) for S in sines for f in system)  # w = 0 is one of many points
+        return turns or (bool(mixed) and not numbers)  # sin(w) is transcendental for algebraic w != 0 (Lindemann)
 
     def leaves_on(self, system: System) -> tuple[Leaf, ...]:
         """What is shown on a system, on both of its parts where it joins half angles; none where it was not found."""
@@ -316,6 +324,15 @@ class View:
         return whole(below.drops)
 
 
+def with_values(systems: list[System], ring: Ring) -> list[System]:
+    """The systems with what functions become where their symbols vanish, once each."""
+    whole = systems
+    for _ in range(2):  # exp(w) = 1 gives w = 0, and that sin(w) = 0
+        more = [[f for f in named_values(system, ring) if not lies_in_ideal(f, system)] for system in whole]
+        whole = [[*system, *fresh] for system, fresh in zip(whole, more, strict=True)]
+    return list({frozenset(map(Hashed, system)): system for system in whole}.values())
+
+
 def closed_systems(leaves: Sequence[Leaf]) -> list[System]:
     """Systems of leaves whose closures are known."""
     return [leaf.system for leaf in leaves if not leaf.nonzero]
@@ -330,7 +347,7 @@ def conditions_on(system: System, ring: Ring) -> tuple[sp.Expr, ...]:
     if any(isinstance(zero, sp.exp) for zero in zeros):
         return ()
     fixed = {zero: sp.Integer(0) for zero in zeros if zero.is_Symbol}
-    if not ring.meaning or not fixed:
+    if not ring.meaning and not fixed.keys() & {angle.symbol for angle in ring.angles}:
         return tuple(zeros)
     rest = [zero.subs(fixed) for zero in zeros if zero not in fixed]
     if any(zero.is_Number and zero != 0 for zero in rest):

@@ -189,9 +189,17 @@ def small_points(size: int) -> list[list[int]]:
 
 
 def is_nowhere(system: Sequence[Poly], ring: Ring) -> bool:
-    """Sine and cosine of half an angle do not vanish together."""
+    """Sine and cosine of half an angle do not vanish together, nor a sum of squares with a term of exponentials."""
     gens = [(ring.context.gen(sine), ring.context.gen(cosine)) for sine, cosine in ring.pairs()]
-    return any(all(any(f == g or f == -g for f in system) for g in pair) for pair in gens)
+    if any(all(any(f == g or f == -g for f in system) for g in pair) for pair in gens):
+        return True
+    others = [k for k, s in enumerate(ring.symbols) if not isinstance(ring.meaning.get(s), sp.exp)]
+    for f in system if len(others) < len(ring.symbols) else ():
+        powers = [[int(p[k]) for k in others] for p in f.to_dict()]
+        one_sign = len({int(c) > 0 for c in f.coeffs()}) == 1 and not any(p % 2 for row in powers for p in row)
+        if one_sign and not all(map(any, powers)):
+            return True
+    return False
 
 
 def irredundant(systems: list[list[Poly]]) -> list[list[Poly]]:

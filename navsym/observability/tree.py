@@ -258,14 +258,17 @@ def tidy_system(system: System, ring: Ring) -> System | None:
 
 
 def named_values(system: System, ring: Ring) -> System:
-    """What the functions that generators stand for become where symbols vanish: sin(w t) and exp(w t) - 1 with w."""
-    if not ring.meaning:
-        return []
-    gone = {s: sp.Integer(0) for s, k in ring.places.items() if any(f == ring.context.gen(k) for f in system)}
-    known = {symbol: text.subs(gone) for symbol, text in ring.meaning.items()}
-    sines = [ring.halves(angle)[0] for angle in ring.angles if known.get(angle.symbol) == 0]
+    """What functions become where symbols vanish: sin(w) and sin(w t) are zero with w, exp(w) is one, and back."""
+    gens = [ring.context.gen(k) for k in range(len(ring.symbols))]
+    gone = {s: sp.Integer(0) for s, k in ring.places.items() if any(f == gens[k] for f in system)}
+    known = gone | {symbol: text.subs(gone) for symbol, text in ring.meaning.items()}
     units = [ring.places[s] for s, value in known.items() if value == 1 and s in ring.places]
-    return sines + [ring.context.gen(place) - 1 for place in units]
+    ones = [
+        ring.meaning[s] for s, k in ring.places.items() if s in ring.meaning and any(f == gens[k] - 1 for f in system)
+    ]
+    powers = [text.args[0].as_coeff_Mul()[1] for text in ones if isinstance(text, sp.exp)]
+    sines = [ring.halves(a)[0] for a in ring.angles if known.get(a.symbol) == 0 or a.symbol in powers]
+    return sines + [gens[k] - 1 for k in units] + [gens[ring.places[x]] for x in powers if x in ring.places]
 
 
 Parts = list[tuple[System, Ring]]

@@ -216,6 +216,36 @@ def conditions_by_name(found) -> dict[str, set[str]]:
     return listed
 
 
+def test_a_symbol_that_also_stands_under_a_sine_takes_the_sine_to_zero_with_it():
+    """Where w vanishes sin(w) does too: the rank there is that of the model at w = 0. Of w = a no rank is claimed."""
+    w = sp.Symbol("w", real=True)
+    F = sp.Matrix([[0, 0, sp.sin(w)], [0, w, 1], [w + 1, 0, 0]])
+    model = LinearModel(F, None, [[-1, -w, 0]])
+    (found,) = [d for d in rank_drops(observe_jointly(model)) if d.subspace == "joint" and d.condition == "w = 0"]
+    assert found.rank == observe_jointly(LinearModel(F.subs(w, 0), None, [[-1, 0, 0]])).joint_dimension == 1
+    assert not found.inside
+    a = sp.Symbol("a", real=True)
+    equal = observe_jointly(LinearModel([[0, w - a], [0, 0]], None, [[sp.sin(w) - sp.sin(a), 1]]))
+    assert all(d.rank is None for d in rank_drops(equal) if d.condition in ("a - w = 0", "-a + w = 0"))
+    fixed = observe_jointly(LinearModel([[0, w - 1], [0, 0]], None, [[1, sp.sin(w)]]))
+    assert {(d.condition, d.rank) for d in rank_drops(fixed)} == {("w - 1 = 0", 1)}
+    # sin(w) = 0 holds at w = 0 and at other points, where less is lost; a range may leave w = 0 alone
+    many = observe_jointly(LinearModel(sp.zeros(2), None, [[w * sp.sin(w), w * sp.sin(w) + w], [0, sp.sin(w)]]))
+    listed = [(d.condition, d.rank) for d in rank_drops(many) if d.subspace == "joint"]
+    assert sorted(listed) == [("sin(w) = 0", None), ("w = 0", 0)]
+
+
+def test_an_exponential_is_one_only_where_its_exponent_is_zero():
+    """exp(w) = 1 is w = 0, with the rank of the model there, and exp(w) + 1 vanishes nowhere."""
+    w = sp.Symbol("w", real=True)
+    model = LinearModel([[0, sp.exp(w) - 1], [0, 0]], None, [[w, 0], [sp.exp(2 * w) - 1, 0]])
+    listed = [(d.condition, d.rank) for d in rank_drops(observe_jointly(model)) if d.subspace == "joint"]
+    assert listed == [("w = 0", 0)]
+    turned = observe_jointly(LinearModel([[0, 0], [sp.tan(w), 0]], None, [[0, sp.exp(w) - 1]]))
+    ranks = {d.condition: d.rank for d in rank_drops(turned) if d.subspace == "joint"}
+    assert ranks["sin(w) = 0"] is None
+
+
 def test_a_drop_at_one_end_of_the_circle_is_found_with_half_the_angle():
     phi = sp.Symbol("phi", real=True)
     found = observe_jointly(LinearModel([[0, 1 + sp.cos(phi)], [0, 0]], None, [[1, 0]]))
