@@ -116,17 +116,19 @@ def test_a_wrong_quantity_is_an_error_that_says_what_was_expected(value, unit, s
 
 
 def test_a_quantity_is_in_the_unit_that_a_model_declares():
-    w, T = {"unit": "deg/h"}, {"unit": "min", "range": ["0", "200"]}
-    model = nav.Model("x v", F=[["0", "1"], ["-w**2", "0"]], H=["x"], interval="T", targets={"s": "w*v"}, w=w, T=T)
+    w, T = {"unit": "deg/h"}, {"unit": "min", "range": ["0", "200"]}  # k turns (deg/h)**2 into 1/min**2
+    model = nav.Model(
+        "x v", F=[["0", "1"], ["-k*w**2", "0"]], H=["x"], interval="T", targets={"s": "w*v"}, w=w, T=T, k="real"
+    )
     for rate in (Q(15, "deg/h"), "15 deg/h", "15", 15, Q(Fraction(1, 4), "arcmin/s")):
-        assert model.read({"w": rate}).F[1, 0] == -225
-    assert model.read({"w": Q(1, "rad/s")}).F[1, 0] == -(sp.Integer(648000) ** 2) / sp.pi**2
-    part = model.with_values(w=15)  # what is left of the declarations keeps their units
+        assert model.read({"w": rate, "k": 1}).F[1, 0] == -225
+    assert model.read({"w": Q(1, "rad/s"), "k": 1}).F[1, 0] == -(sp.Integer(648000) ** 2) / sp.pi**2
+    part = model.with_values(w=15, k=1)  # what is left of the declarations keeps their units
     assert part.read({"T": Q(1, "hour")}).T == nav.Model.from_document(part.document()).read({"T": "1 h"}).T == 60
     for wrong in ({"w": Q(1, "m")}, {"T": "1 deg"}, {"T": Q(5, "hour")}, {"T": "5 h"}):
         with pytest.raises(nav.NavsymError, match=r"expected a (quantity in|value in the declared)"):
             model.read(wrong)
-    phases = nav.phases(model, "s", w=1, T=(Q(6, "s"), Q(60, "s")))
+    phases = nav.phases(model, "s", w=1, k=1, T=(Q(6, "s"), Q(60, "s")))
     assert phases.regimes[0].ends == ("1/10", "1")
 
 
