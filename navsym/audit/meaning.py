@@ -24,9 +24,11 @@ Frame = str | tuple[str, str] | None
 
 def list_meaningless(names: Names, sources: Sequence[Source], entries: Sequence[Entry]) -> list[tuple[str, str]]:
     """Place and reason of every formula that the declared units and frames do not allow."""
-    if not names.units and not names.frames:
+    is_noted = names.units or names.frames
+    formulas = [*list_formulas(sources, names), *list_sides(entries)] if is_noted else []
+    if not formulas:
         return []
-    places, trees = zip(*list_formulas(sources, names), *list_sides(entries), strict=True)
+    places, trees = zip(*formulas, strict=True)
     shapes = {name: declare_unit(names, name) for name in names.spellings}
     refused: list[DomainError] = []
     infer_units(trees, shapes, where=places, loose=True, refused=refused)
