@@ -47,7 +47,7 @@ def test_a_wrong_verdict_and_a_late_one_are_noticed():
     given = {"A": {"matrix": ["n", "n"]}, "B": {"matrix": ["n", "n"]}}
     assert outcome_here(Construct("A @ B = B @ A", True, given))[0] == "wrong"
     assert outcome_here(Construct("trace(A @ B) = trace(B @ A)", False, given))[0] == "wrong"
-    assert outcome_here(Construct("integral(exp(-x**2), x, 0, oo) = sqrt(pi)/2", True), 0.01) == ("open", "time")
+    assert outcome_here(Construct("cos(x) + cos(sqrt(2)*x) > -2", True, {"x": "real"}), 0.05) == ("open", "time")
 
 
 def test_a_point_without_a_value_is_passed_over():
