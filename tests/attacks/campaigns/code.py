@@ -234,7 +234,7 @@ def run_python(source: str, subject: Subject, points: list[list[Any]]) -> list[f
     scope: dict[str, Any] = {}
     try:
         with np.errstate(all="ignore"), warnings.catch_warnings():
-            warnings.simplefilter("ignore", SyntaxWarning)
+            warnings.simplefilter("ignore")  # np.matrix is on its way out, and is in use
             exec(compile(source, "mutant", "exec"), scope)
             shapes = [sizes or () for _, sizes, _ in subject.parameters()]
             values = [
