@@ -12,7 +12,6 @@ from tests.fidelity.scaling import Scaling, narrowed, pairs_of
 from tests.fidelity.units import METRE, SECOND, units_of
 
 A_NUMBER = "a number stands beside a quantity without unit, so that the other side alone allows more"
-CANCELLED = "what cancels on the printed side does not occur on the derived one, or there as a product only"
 #: Claims whose printed side allows fewer units than the derived one, and why.
 NARROWER = {
     "guaranteed_velocity:2.D.never-exceeded": A_NUMBER,
@@ -20,7 +19,6 @@ NARROWER = {
     "joint_correction:2.scale.period": A_NUMBER,
     "terrain_search:9.small": A_NUMBER,
     "terrain_search:10.equal.sum": A_NUMBER,
-    "joint_correction:3.bias.velocity": CANCELLED,
 }
 
 

@@ -19,6 +19,7 @@ from navsym.guaranteed.phases.budget import Budget
 from navsym.guaranteed.phases.patterns import sample_contacts
 from navsym.guaranteed.phases.plane import prove_part, slice_family
 from tests.benchmarks.lengths import values_for_lengths
+from tests.benchmarks.twofold import exact_panels
 
 TRIPLE = {
     "states": "x v a",
@@ -70,7 +71,7 @@ def disagreements(found, count, seed):
         first = found.first_ends[0] + (found.first_ends[1] - found.first_ends[0]) * share
         one = slice_family(found.family, found.second, second)
         basis, contacts = sample_contacts(one, Fraction(int(first.p), int(first.q)))
-        cost = basis.scale * contacts.value
+        cost = basis.scale * exact_panels(basis.panels).value(contacts)
         formula = value_at(found, dict(zip(found.parameters, (first, second), strict=True)))
         wrong += abs(cost - formula) > 1e-8 * formula
     return wrong

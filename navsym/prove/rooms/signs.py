@@ -454,10 +454,10 @@ def compare_squares(term: Term, above: Proof, side: Proof) -> Proof:
 
 def invert_twice(term: Term, u: Term) -> Iterator[Proof]:
     """c u != 0 as c (u**(-1))**(-1), which is never 0."""
-    share = sp.cancel(to_sympy(term) / to_sympy(u))
-    if share.is_Rational and share != 0:
+    (c, rest), (d, other) = to_sympy(term).as_coeff_Mul(), to_sympy(u).as_coeff_Mul()
+    if rest == other and c != 0:
         proof: Proof = {"rule": "product", "factors": [None, None]}
-        yield {"rule": "equal", "to": f"({share})*(({write_term(u)})**(-1))**(-1)", "defined": Holes(), "proof": proof}
+        yield {"rule": "equal", "to": f"({c / d})*(({write_term(u)})**(-1))**(-1)", "defined": Holes(), "proof": proof}
 
 
 def divide_by_fourth(u: Term) -> Proof:
