@@ -118,8 +118,12 @@ def list_parts(goal: Any) -> Iterator[tuple[Term, str]]:
 
 
 def is_multiple(part: Term) -> bool:
-    """Whether a term is a number times something: a letter for that alone gains as much."""
-    return part[0] == "*" and sum(1 for f in player.list_factors(part) if player.symbols_of(f)) == 1
+    """Whether a term is a number times something, or a fraction beside a symbol: a letter for that gains as much."""
+    parts = player.list_factors(part) if part[0] == "*" else player.list_terms(part)
+    moving = [p for p in parts if player.symbols_of(p)]
+    if part[0] == "*" or len(moving) != 1 or len(parts) == 1:
+        return part[0] == "*" and len(moving) == 1
+    return moving[0][0] == "symbol" and all(p in moving or player.constant_of(p) is not None for p in parts)
 
 
 def measure(expression: sp.Expr) -> tuple[int, int]:
