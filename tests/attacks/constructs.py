@@ -409,6 +409,7 @@ def cases(rng: random.Random) -> Construct:
 def strips(rng: random.Random) -> Construct:
     """A case that says too much on a strip between two parallel planes, or nothing wrong where it is empty."""
     a, b, c = (rng.randint(-4, 4) or 1 for _ in range(3))
+    c += 5 * (c == a == -b)  # no side is the other one and 1
     side, other, tiny = f"{a}*x + {b}*y", f"{c}*x - {a}*y + 1", f"1e-{rng.choice((3, 12, 20, 40))}"
     truth = rng.random() < 0.3
     text = rng.choice((
