@@ -7,6 +7,7 @@ exp(x + y) >= 1 + x + y all of x + y is u.
 
 from __future__ import annotations
 
+import itertools
 from collections.abc import Callable, Iterator
 from typing import Any, NamedTuple
 
@@ -62,7 +63,7 @@ OUTER |= {"sin": Span(player.MINUS_ONE, player.ONE), "cos": Span(player.MINUS_ON
 
 def by_letters(goal: Any, sample: list[arb]) -> Iterator[Proof]:
     """A number u in the place of a part that alone has its symbols: larger parts first."""
-    for part, name in list_parts(goal):
+    for part, name in choose_parts(goal):
         form = player.replace(goal.term, part, ("symbol", name))
         is_lonely = not player.symbols_of(form) & player.symbols_of(part)
         is_bent = is_lonely and player.symbols_of(player.differentiate(form, name))
@@ -84,7 +85,7 @@ def cut_to_sine(span: Span) -> Span:
 
 def by_common_parts(goal: Any, sample: list[arb]) -> Iterator[Proof]:
     """A number u in the place of a sum whose symbols stand elsewhere too, where fewer of them remain."""
-    for part, name in list_parts(goal):
+    for part, name in choose_parts(goal):
         form = player.replace(goal.term, part, ("symbol", name))
         linear, u = to_sympy(part) if part[0] == "+" else sp.S.Zero, symbol(name)
         for v in map(symbol, sorted(player.symbols_of(form) & player.symbols_of(part))):
@@ -99,31 +100,33 @@ def by_common_parts(goal: Any, sample: list[arb]) -> Iterator[Proof]:
                 break
 
 
-def list_parts(goal: Any) -> Iterator[tuple[Term, str]]:
+def choose_parts(goal: Any) -> Iterator[tuple[Term, str]]:
     """Parts of a term that are no symbols, numbers or multiples of a part, larger ones first, with a new name.
 
     Of symbols in hypotheses there are none: the letter would not know of them.
     """
     bound = set(player.set_union(map(player.symbols_of, (*goal.given, *goal.zeros))))
     parts = [*dict.fromkeys(subterms(goal.term))][:-1]
+
+    def is_worth(part: Term) -> bool:
+        names = player.symbols_of(part)
+        return part[0] != "symbol" and bool(names) and not names & bound and not gains_nothing(part)
+
     name = "u"
     while name in goal.box:
         name += "u"
-    count = 0
-    for part in reversed(parts if len(parts) <= MOST_TERMS else []):
-        names = player.symbols_of(part)
-        if part[0] != "symbol" and names and not names & bound and not is_multiple(part) and count < MOST_PARTS:
-            count += 1
-            yield part, name
+    for part in itertools.islice(filter(is_worth, reversed(parts if len(parts) <= MOST_TERMS else [])), MOST_PARTS):
+        yield part, name
 
 
-def is_multiple(part: Term) -> bool:
+def gains_nothing(part: Term) -> bool:
     """Whether a term is a number times something, or a fraction beside a symbol: a letter for that gains as much."""
     parts = player.list_factors(part) if part[0] == "*" else player.list_terms(part)
     moving = [p for p in parts if player.symbols_of(p)]
-    if part[0] == "*" or len(moving) != 1 or len(parts) == 1:
-        return part[0] == "*" and len(moving) == 1
-    return moving[0][0] == "symbol" and all(p in moving or player.constant_of(p) is not None for p in parts)
+    if part[0] == "*":
+        return len(moving) == 1
+    is_shift = len(moving) == 1 and moving[0][0] == "symbol"
+    return is_shift and all(p in moving or player.constant_of(p) is not None for p in parts)
 
 
 def measure(expression: sp.Expr) -> tuple[int, int]:
