@@ -5,7 +5,7 @@ import sympy as sp
 from navsym.claims import CERTIFIED, Bound, Equation, claim
 from navsym.models.linear import LinearModel, observability_matrix
 from navsym.models.transition.exponential import regressors, transition_matrix
-from navsym.prove.identities.normal_form import vanishes_identically
+from navsym.prove.identities import vanishes_identically
 from navsym_papers.guaranteed_velocity.model import CHANNEL, H, T, tau
 
 alpha, velocity, bias, drift, azimuth = sp.symbols("alpha pi_ epsilon nu beta3", real=True)

@@ -11,7 +11,7 @@ from functools import cache
 import sympy as sp
 
 from navsym.claims import CERTIFIED, Equation, claim
-from navsym.prove.identities.normal_form import vanishes_identically
+from navsym.prove.identities import vanishes_identically
 
 T, u = sp.symbols("T u", positive=True)
 

@@ -11,12 +11,11 @@ import sympy as sp
 from flint import arb
 
 from navsym.core.balls import precision
-from navsym.core.errors import NavsymError
 from navsym.export.accuracy.continuation import analyse
 from navsym.export.accuracy.rounding import BITS, LIBRARY, Arithmetic, literals_of
 from navsym.export.expression_graph import Graph, build
 from navsym.export.forms import factored, safe
-from navsym.prove.identities.normal_form import OutsideLanguageError, reduce_to_zero
+from navsym.prove.identities import has_unique_form, vanishes_identically
 
 SAMPLES = 12
 
@@ -86,13 +85,9 @@ def tie_of(meaning: sp.Expr, formula: sp.Expr) -> str | None:
     """The tie of one value; None when it differs from its formula."""
     if meaning == formula:
         return "identical"
-    try:
-        reduction = reduce_to_zero(meaning - formula)
-    except (OutsideLanguageError, NavsymError):
-        return "enclosures"
-    if reduction.zero:
+    if vanishes_identically(meaning - formula):
         return "normal form"
-    return None if reduction.complete else "enclosures"
+    return None if has_unique_form(meaning - formula) else "enclosures"
 
 
 def best_graph(

@@ -25,7 +25,7 @@ from navsym.export.forms import safe
 from navsym.export.inputs import arguments_of, inputs_of, with_whole_arrays
 from navsym.export.languages.names import function_name, local_names
 from navsym.export.parts import ExportedFunction, Input, Layout, Material, Output, Piece, Source, inside
-from navsym.prove.identities.normal_form import vanishes_identically
+from navsym.prove.identities import vanishes_identically
 from navsym.prove.wording import expression_text
 
 #: Paper -> symbol -> the last value that its code accepts, where a claim holds without end: one Schuler period.

@@ -15,9 +15,8 @@ from flint import arb
 from navsym.claims.statement import Box, Equation
 from navsym.claims.verdict import CERTIFIED, CONFIRMED, OPEN, PROVED, REFUTED, Verdict
 from navsym.core.balls import UnsupportedError, enclose, exact_ball, precision
-from navsym.prove.assumptions import add_sides, conditions_as_written, remaining_assumptions
-from navsym.prove.identities.normal_form import OutsideLanguageError, UndefinedExpressionError, reduce_to_zero
-from navsym.prove.identities.numbers import is_zero
+from navsym.prove.assumptions import remaining_assumptions
+from navsym.prove.identities import has_unique_form, is_zero, vanishes_identically
 from navsym.prove.one_symbol import decide_by_roots
 from navsym.prove.sampling.points import Sample, search_counterexample
 from navsym.prove.sampling.second_look import BITS, Look, look_again
@@ -26,9 +25,6 @@ from navsym.prove.wording import decimal_ends, refute_at_point, scope_of
 
 ENOUGH_POINTS = 32
 TURNS = 120  # radians: twenty turns of a wave
-
-#: Functions inside an angle that make angles depend on each other: |a| and a, say.
-BENT = (sp.Abs, sp.sign, sp.Max, sp.Min)
 
 
 def decide_equation(statement: Equation) -> Verdict:
@@ -87,9 +83,7 @@ def decide_entry(printed: sp.Expr, derived: sp.Expr, statement: Equation) -> Ver
         if sample.counterexample is not None:
             return refute_by_sample(sample)
         return prove_equal(printed, derived, statement, sample)
-    except UndefinedExpressionError as error:
-        return Verdict(OPEN, "normal form", scope_of(printed - derived, box), evidence=str(error))
-    except (UnsupportedError, OutsideLanguageError) as error:
+    except UnsupportedError as error:
         return Verdict(OPEN, "none", scope_of(printed - derived, box), evidence=str(error))
 
 
@@ -149,7 +143,7 @@ def decide_numeral(printed: sp.Expr, derived: sp.Expr, statement: Equation) -> V
 
 def assumptions_of(printed: sp.Expr, derived: sp.Expr, statement: Equation) -> tuple[str, ...]:
     """What the two sides need to exist; subtraction may have cancelled it."""
-    return remaining_assumptions(conditions_as_written(printed, derived), statement.box, statement.nonzero)
+    return remaining_assumptions((printed, derived), statement.box, statement.nonzero)
 
 
 # -- exact equality ---------------------------------------
@@ -159,20 +153,17 @@ def prove_equal(printed: sp.Expr, derived: sp.Expr, statement: Equation, sample:
     if sample.points == 0:  # what exists nowhere is equal to everything
         return judge_sample(sample, scope_of(printed - derived, statement.box), "equality")
     difference = printed - derived
-    method, evidence = "exact number", "printed - derived is exactly zero"
-    try:
-        reduction = reduce_to_zero(difference)
-        if reduction.zero:
-            method, evidence = "normal form", f"printed - derived reduces to 0 in {reduction.ring}"
-        elif difference.free_symbols or not is_zero(difference):
-            return decide_unproved(printed, derived, statement, sample)
-    except OutsideLanguageError:
+    if vanishes_identically(difference):
+        method, evidence = "normal form", "printed - derived is zero by exact algebra"
+    elif not difference.free_symbols and is_zero(difference):
+        method, evidence = "exact number", "printed - derived is exactly zero"
+    else:
         return decide_unproved(printed, derived, statement, sample)
     return Verdict(
         PROVED,
         method=method,
         scope=scope_of(sp.Tuple(printed, derived), statement.box),
-        assumptions=remaining_assumptions(add_sides(reduction, printed, derived), statement.box, statement.nonzero),
+        assumptions=assumptions_of(printed, derived, statement),
         evidence=evidence,
     )
 
@@ -188,7 +179,7 @@ def decide_unproved(printed: sp.Expr, derived: sp.Expr, statement: Equation, sam
     verdict = judge_look(look, sample, scope, "equality")
     if verdict.status == REFUTED:
         return verdict
-    if verdict.status == CONFIRMED and not difference.has(*BENT) and reduce_to_zero(difference).complete:
+    if verdict.status == CONFIRMED and has_unique_form(difference):
         evidence = f"{verdict.evidence}, and the normal form of printed - derived is not zero"
         verdict = replace(verdict, status=OPEN, method="normal form", evidence=evidence)
     return replace(verdict, assumptions=assumptions_of(printed, derived, statement))

@@ -12,7 +12,7 @@ from navsym.claims.statement import Bound, Box, Equation
 from navsym.claims.verdict import OPEN, REFUTED, Verdict
 from navsym.core.balls import UnsupportedError
 from navsym.core.errors import DomainError
-from navsym.prove.assumptions import add_sides, remaining_assumptions
+from navsym.prove.assumptions import remaining_assumptions
 from navsym.prove.equations import (
     decide_equation,
     find_beats,
@@ -22,7 +22,6 @@ from navsym.prove.equations import (
     refute_by_sample,
     shape_of,
 )
-from navsym.prove.identities.normal_form import OutsideLanguageError, reduce_to_zero
 from navsym.prove.one_symbol import decide_by_roots
 from navsym.prove.sampling.points import Sample, search_counterexample
 from navsym.prove.sampling.second_look import Look, look_again
@@ -56,10 +55,8 @@ def decide_bound(statement: Bound) -> Verdict:
         verdict = decide_difference(difference, statement.relation, statement.box, scope, existing)
         if verdict.status == REFUTED:
             return verdict
-        # Subtraction and the algebra may have cancelled what is not defined everywhere.
-        conditions = add_sides(reduce_to_zero(difference), *sides)
-        return replace(verdict, assumptions=remaining_assumptions(conditions, statement.box))
-    except (UnsupportedError, OutsideLanguageError) as error:
+        return replace(verdict, assumptions=remaining_assumptions(sides, statement.box))
+    except UnsupportedError as error:
         return Verdict(OPEN, "none", scope, evidence=str(error))
 
 

@@ -18,13 +18,7 @@ from navsym.claims.verdict import PROVED, REFUTED, Verdict
 from navsym.core.balls import UnsupportedError, exact_ball, tape
 from navsym.core.exact import to_fraction, to_rational
 from navsym.core.numbers import Number
-from navsym.prove.assumptions import conditions_as_written, remaining_assumptions
-from navsym.prove.identities.normal_form import (
-    OutsideLanguageError,
-    divisors_inside,
-    logarithms_inside,
-    radicands_inside,
-)
+from navsym.prove.assumptions import divisors_inside, logarithms_inside, radicands_inside, remaining_assumptions
 from navsym.prove.sampling.points import Point, Range, ranges_of, value_at
 from navsym.prove.sampling.second_look import exists_at
 from navsym.prove.signs.one_variable import Survey, Zero, survey_signs
@@ -57,7 +51,7 @@ def decide_by_roots(
             return None
         statement = RootStatement(symbol, box, limit, (difference, *sides), found, complete)
         return verdict_of(statement, CONTRADICTED[relation], scope)
-    except (UnsupportedError, OutsideLanguageError):
+    except UnsupportedError:
         return None
 
 
@@ -74,7 +68,7 @@ class RootStatement:
 
     def assumptions(self) -> tuple[str, ...]:
         """Where the sides exist, as far as the range does not guarantee it."""
-        return remaining_assumptions(conditions_as_written(*self.sides), self.box)
+        return remaining_assumptions(self.sides, self.box)
 
     def exist_at(self, value: sp.Expr) -> bool:
         """True where all sides are shown to exist, at a value that is shown to lie in the range."""

@@ -18,7 +18,7 @@ import sympy as sp
 
 from navsym.claims.statement import Box, Equation, Optimum
 from navsym.claims.verdict import CERTIFIED, OPEN, PROVED, Status, Verdict
-from navsym.prove.assumptions import conditions_as_written, is_nonnegative, remaining_assumptions
+from navsym.prove.assumptions import is_nonnegative, remaining_assumptions
 from navsym.prove.equations import decide_equation, weakest_verdict
 from navsym.prove.inequalities import decide_difference
 from navsym.prove.signs.bounds import Sign, SignProof, prove_sign
@@ -61,11 +61,10 @@ def existence_assumptions(statement: Optimum) -> tuple[str, ...]:
     A component of the dual that the functional does not meet, or that a regressor cancels, is part of the solution
     as well: (1, 1/(T - 1)) is no dual at T = 1.
     """
-    fixed = remaining_assumptions(conditions_as_written(fixed_parts(statement)), statement.box)
+    fixed = remaining_assumptions([fixed_parts(statement)], statement.box)
     start, end = statement.interval
     place, box = start + (end - start) * SHARE, {**statement.box, SHARE: (0, 1)}
-    conditions = conditions_as_written(*statement.regressors)
-    moving = remaining_assumptions(conditions, box, at=lambda part: part.subs(statement.variable, place))
+    moving = remaining_assumptions(statement.regressors, box, at=lambda part: part.subs(statement.variable, place))
     return (*fixed, *moving)
 
 

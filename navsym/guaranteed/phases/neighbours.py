@@ -26,7 +26,7 @@ from navsym.guaranteed.phases.closed_forms import ClosedForm, is_feasible, solve
 from navsym.guaranteed.phases.family import Family
 from navsym.guaranteed.phases.patterns import Pattern, PatternInterval, sample_contacts
 from navsym.guaranteed.search.exchange import regressor_rows
-from navsym.prove.identities.numbers import is_zero
+from navsym.prove.identities import is_zero
 
 LARGEST, NEAR = 720, 1e-8
 #: Where a guess is looked at in a span, and the shares of a flat panel that may carry the functional.

@@ -22,9 +22,8 @@ from flint import arb
 from navsym.claims.statement import Box
 from navsym.core.balls import UnsupportedError, enclose, exact_ball, tape
 from navsym.core.exact import to_fmpq, to_rational
-from navsym.prove.identities.normal_form import OutsideLanguageError
-from navsym.prove.identities.numbers import is_zero
-from navsym.prove.identities.transcendental import factor_exactly
+from navsym.prove.identities import is_zero
+from navsym.prove.rooms.goals import factor
 from navsym.prove.sampling.descent import Guess, find_lowest
 from navsym.prove.sampling.points import AWKWARD, Point, Range, draw_points, ranges_of, value_at
 
@@ -54,7 +53,7 @@ def zeros_of_factors(difference: sp.Expr, limits: Mapping[sp.Symbol, Range]) -> 
     """Points of the box where a factor or what stands under a root or in an absolute value is zero."""
     sharp = [node.args[0] for node in difference.atoms(sp.Abs, sp.Pow) if node.is_Function or node.exp.is_Rational]
     kinks = sorted((part for part in sharp if part.free_symbols), key=str)
-    bases = dict.fromkeys(map(unwrap_factor, (*sp.Mul.make_args(factor_exactly(difference)), *kinks)))
+    bases = dict.fromkeys(map(unwrap_factor, (*sp.Mul.make_args(factor(difference)), *kinks)))
     for base in list(bases)[:MOST_FACTORS]:
         for symbol in sorted(base.free_symbols, key=str):
             yield from zeros_in(base, symbol, limits)
@@ -312,7 +311,7 @@ def sharp_value(difference: sp.Expr, point: Point, sides: Sequence[sp.Expr]) -> 
         if put_in is None:
             return None
         ball = enclose(tape(put_in), {}, BITS)
-    except (UnsupportedError, OutsideLanguageError):
+    except UnsupportedError:
         return None
     return ball if ball.is_finite() else None
 
@@ -348,7 +347,7 @@ def is_zero_at(difference: sp.Expr, point: Point) -> bool:
     try:
         put_in = put_in_numbers(difference, point)
         return put_in is not None and is_zero(put_in)
-    except (UnsupportedError, OutsideLanguageError):
+    except UnsupportedError:
         return False
 
 

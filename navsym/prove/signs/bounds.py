@@ -16,7 +16,6 @@ from navsym.claims.statement import Box
 from navsym.core.balls import UnsupportedError, precision, tape
 from navsym.core.errors import NavsymError
 from navsym.language.expression import to_text
-from navsym.prove.identities.ingredients import OutsideLanguageError
 from navsym.prove.rooms.goals import player
 from navsym.prove.sampling.points import Range, ranges_of, value_at, write_range
 from navsym.prove.sampling.second_look import zeros_of
@@ -52,7 +51,7 @@ def prove_sign(
             found = prove_term(player.parse(to_text(form)), RELATIONS[wanted], limits, rounds)
             if found is not None:
                 return SignProof(wanted, f"{form} {RELATIONS[wanted]} 0", exact=found and bool(exact))
-    except (NavsymError, UnsupportedError, OutsideLanguageError, checker.Refused, player.Refused, RecursionError):
+    except (NavsymError, UnsupportedError, checker.Refused, player.Refused, RecursionError):
         pass
     return UNKNOWN
 

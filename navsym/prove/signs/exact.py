@@ -8,7 +8,7 @@ from enum import IntEnum
 import sympy as sp
 
 from navsym.core.balls import exact_ball
-from navsym.prove.identities.numbers import is_zero
+from navsym.prove.identities import is_zero
 
 
 class Sign(IntEnum):

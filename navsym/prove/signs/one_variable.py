@@ -14,16 +14,15 @@ from itertools import pairwise
 from typing import TypeAlias
 
 import sympy as sp
-from flint import fmpq, fmpq_mpoly, fmpq_poly
+from flint import fmpq, fmpq_poly
 
 from navsym.core.balls import UnsupportedError
 from navsym.core.errors import NavsymError
 from navsym.core.exact import to_rational
-from navsym.prove.identities.converter import Converter
-from navsym.prove.identities.transcendental import largest_exponent
+from navsym.prove.identities import read_term
+from navsym.prove.rooms.goals import player
 from navsym.prove.sampling.points import Range
 from navsym.prove.signs.real_roots import (
-    MOST_DEGREE,
     RealNumber,
     UndecidedError,
     compare_numbers,
@@ -120,27 +119,15 @@ def remember_survey(expression: sp.Expr, limit: Range, others: tuple[sp.Expr, ..
 
 def read_fractions(expressions: Sequence[sp.Expr], symbol: sp.Symbol) -> list[Fraction] | None:
     """Rational functions over Q of a symbol, in lowest terms; None where one is none."""
-    plain = all(part.free_symbols <= {symbol} and part.is_rational_function(symbol) for part in expressions)
-    if not plain or largest_exponent(sp.Tuple(*expressions)) > MOST_DEGREE:
+    if any(part.free_symbols - {symbol} for part in expressions):
         return None
     try:
-        converter = Converter(list(expressions))
-        quotients = [converter.convert(part) for part in expressions]
-    except (NavsymError, OverflowError, ZeroDivisionError):
+        pairs = [player.to_fraction(read_term(part)) for part in expressions]
+    except (NavsymError, player.Refused, OverflowError, ZeroDivisionError):
         return None
-    pairs = [(read_polynomial(q.numerator), read_polynomial(q.denominator)) for q in quotients]
-    known = [(top, bottom) for top, bottom in pairs if top is not None and bottom]
-    if len(known) < len(pairs) or converter.found.symbols.get(symbol) != 1:
+    if any(bottom == 0 for _, bottom in pairs):
         return None
-    return [(top / top.gcd(bottom), bottom / top.gcd(bottom)) for top, bottom in known]
-
-
-def read_polynomial(polynomial: fmpq_mpoly) -> fmpq_poly | None:
-    """The same in the first generator alone; None where there are others."""
-    if any(polynomial.degrees()[1:]):
-        return None
-    rows = {int(powers[0]): c for powers, c in polynomial.to_dict().items()}
-    return fmpq_poly([rows.get(k, fmpq(0)) for k in range(max(rows, default=0) + 1)])
+    return [(top / top.gcd(bottom), bottom / top.gcd(bottom)) for top, bottom in pairs]
 
 
 def read_interval(limit: Range) -> Interval:

@@ -1,41 +1,45 @@
 """Sums of sines and cosines as products, so that their signs can be read off exactly.
 
-``2 cos(t - T/2) - 2 cos(T/2)`` becomes ``4 sin(t/2) sin((T - t)/2)``. In the generators
-``z = exp(i angle)`` a trigonometric polynomial is an ordinary one: factor it there, and bring
-every factor back to real form about its middle power. The product is returned only when the
-normal form proves it equal to the sum, so that the factoring itself need not be trusted.
+``2 cos(t - T/2) - 2 cos(T/2)`` becomes ``4 sin(t/2) sin((T - t)/2)``. In the normal form of the checker, with
+``z = exp(i angle)``, a trigonometric polynomial is an ordinary one: factor it there, and bring every factor back to
+real form about its middle power. The product is returned only when exact algebra shows it equal to the sum, so that the
+factoring itself need not be trusted.
 """
 
 from __future__ import annotations
 
 from collections.abc import Mapping
 from fractions import Fraction
+from math import lcm
+from typing import Any
 
 import sympy as sp
-from flint import fmpq_mpoly
+from flint import Ordering, fmpq, fmpq_mpoly_ctx
+from sympy.simplify.fu import TR1, TR2
 
-from navsym.core.exact import to_fraction, to_rational
+from navsym.core.errors import NavsymError
+from navsym.core.exact import to_rational
 from navsym.core.rational_functions import factor_exactly
-from navsym.prove.identities.converter import Converter, vanishes_identically
-from navsym.prove.identities.ingredients import Monomial, OutsideLanguageError
+from navsym.language.expression import symbol
+from navsym.prove.identities import read_term, vanishes_identically
+from navsym.prove.rooms.goals import player
 
-Exponents = tuple[int, ...]
+#: A monomial: exponents of the atoms of the normal form.
+Powers = tuple[fmpq, ...]
 
 
 def as_product(expression: sp.Expr) -> sp.Expr | None:
     """The expression as a product of real factors, or None when no factoring was found."""
+    if not expression.has(sp.sin, sp.cos, sp.tan, sp.cot, sp.sec, sp.csc):
+        return None
     try:
-        converter = Converter([expression])
-    except OutsideLanguageError:
+        top, bottom = map(real_factors, sp.fraction(sp.together(TR2(TR1(expression)))))
+    except (NavsymError, player.Refused):
         return None
-    if converter.roots or converter.atoms or not converter.found.angles:
-        return None
-    quotient = converter.convert(expression)
-    top = real_factors(converter, quotient.numerator)
-    bottom = real_factors(converter, quotient.denominator)
     if top is None or bottom is None or len(top) + len(bottom) < 2:
         return None
     product = sp.Mul(*top) / sp.Mul(*bottom)
+    product = product.xreplace({symbol(own.name): own for own in expression.free_symbols})
     # The phases left out of the factors multiply to a rational constant.
     product *= constant_ratio(expression, product)
     return product if vanishes_identically(expression - product) else None
@@ -67,69 +71,70 @@ def constant_ratio(expression: sp.Expr, product: sp.Expr) -> sp.Rational:
     return to_rational(ratio or Fraction(1))
 
 
-def real_factors(converter: Converter, polynomial: fmpq_mpoly) -> list[sp.Expr] | None:
-    """Real forms of the irreducible factors, without their phases and constants."""
-    reduced = converter.reduce_unity(polynomial)
-    if reduced.is_zero():
+def real_factors(expression: sp.Expr) -> list[sp.Expr] | None:
+    """Real forms of the irreducible factors, without their phases and constants; None where one has none."""
+    term = read_term(expression)
+    number = player.evaluate(term, player.make_symbols(sorted(player.symbols_of(term))), player.Exact).parts[0]
+    number = number.divide_turns()
+    known = {atom: read_atom(atom) for monomial in number.terms for atom, _ in monomial}
+    if not number.terms or None in known.values():
         return None
-    real = [(real_form(converter, factor), multiplicity) for factor, multiplicity in factor_exactly(reduced)[1]]
-    if any(form is None for form, _ in real):
-        return None
-    return [sp.Pow(form, multiplicity) for form, multiplicity in real if form != 1]
+    atoms = sorted(known, key=lambda atom: sp.default_sort_key(sp.Tuple(sp.Symbol(known[atom][0]), known[atom][1])))
+    bases = [known[atom] for atom in atoms]
+    rows = {tuple(fmpq(dict(m).get(atom, 0)) for atom in atoms): c for m, c in number}
+    low = [min(powers) for powers in zip(*rows, strict=True)]
+    sizes = [lcm(*(int(q.q) for q in powers)) for powers in zip(*rows, strict=True)]
+    ring = fmpq_mpoly_ctx.get([f"g{k}" for k in range(len(atoms))], Ordering.lex)
+    whole = {tuple(int((q - b) * n) for q, b, n in zip(row, low, sizes, strict=True)): c for row, c in rows.items()}
+    factors = [({tuple(low): fmpq(1)}, 1)]
+    for polynomial, power in factor_exactly(ring.from_dict(whole))[1]:
+        terms = polynomial.to_dict().items()
+        factors.append(({tuple(fmpq(e, n) for e, n in zip(m, sizes, strict=True)): c for m, c in terms}, int(power)))
+    real = [(real_form(bases, terms), power) for terms, power in factors]  # type: ignore[arg-type]
+    return None if any(form is None for form, _ in real) else [form**power for form, power in real if form != 1]
 
 
-def real_form(converter: Converter, factor: fmpq_mpoly) -> sp.Expr | None:
+def read_atom(atom: Any) -> tuple[str, sp.Expr] | None:
+    """The kind of an atom and what it is of: a symbol, exp or cis of a product of symbols and pi; None for others."""
+    _, kind, content = atom
+    if kind.startswith("symbol "):
+        return "symbol", symbol(kind.removeprefix("symbol "))
+    if kind == "pi":
+        return "symbol", sp.pi
+    if kind not in ("exp", "cis"):
+        return None
+    product = sp.Integer(1)
+    for monomial, _ in content:
+        for inner, power in monomial:
+            base = read_atom(inner)
+            if base is None or base[0] != "symbol":
+                return None
+            product *= base[1] ** to_rational(fmpq(power))
+    return ("turn" if atom == player.TURN else kind), product
+
+
+def real_form(bases: list[tuple[str, sp.Expr]], terms: Mapping[Powers, fmpq]) -> sp.Expr | None:
     """A factor divided by its middle power: a sum of cosines, or i times a sum of sines."""
-    terms = {tuple(int(e) for e in k): to_fraction(c) for k, c in factor.to_dict().items()}
-    places = range(start := len(converter.found.symbols), start + len(converter.found.angles))
-    if len(terms) == 1 and all(p in places or p == len(k) - 1 for k in terms for p, e in enumerate(k) if e):
-        return sp.Integer(1)  # of modulus one: only z and the root of unity occur
-    if any(exponents[-1] for exponents in terms):
+    places = [k for k, (kind, _) in enumerate(bases) if kind == "cis"]
+    turns = [k for k, (kind, _) in enumerate(bases) if kind == "turn"]
+    if len(terms) > 1 and any(powers[k] for powers in terms for k in turns):
         return None  # a root of unity inside the factor
-    centre = {p: Fraction(min(k[p] for k in terms) + max(k[p] for k in terms), 2) for p in places}
+    middle = {k: (min(p[k] for p in terms) + max(p[k] for p in terms)) / 2 for k in places}
     for parity in (1, -1):
-        if is_symmetric(converter, terms, centre, parity):
-            return rebuild_product(converter, terms, centre, parity)
+        mirrored = (tuple(2 * middle[k] - q if k in middle else q for k, q in enumerate(powers)) for powers in terms)
+        if all(terms.get(m) == parity * c for m, c in zip(mirrored, terms.values(), strict=True)):
+            return sp.Add(*(real_term(bases, powers, middle, c, parity) for powers, c in terms.items()))
     return None
 
 
-def is_symmetric(
-    converter: Converter, terms: Mapping[Exponents, Fraction], centre: Mapping[int, Fraction], parity: int
-) -> bool:
-    """Reflection of all angles about the middle power keeps (or negates) the coefficients."""
-    mirrored = (tuple(int(2 * centre[p] - e) if p in centre else e for p, e in enumerate(powers)) for powers in terms)
-    return all(terms.get(m) == parity * coefficient for m, coefficient in zip(mirrored, terms.values(), strict=True))
-
-
-def rebuild_product(
-    converter: Converter, terms: Mapping[Exponents, Fraction], centre: Mapping[int, Fraction], parity: int
+def real_term(
+    bases: list[tuple[str, sp.Expr]], powers: Powers, middle: Mapping[int, fmpq], c: fmpq, parity: int
 ) -> sp.Expr:
-    function = sp.cos if parity == 1 else sp.sin
-    total = sp.Integer(0)
-    for exponents, coefficient in terms.items():
-        angle = sum((angle_of(converter, p, exponents[p] - centre[p]) for p in centre), sp.Integer(0))
-        total += to_rational(coefficient) * real_generators(converter, exponents) * function(angle)
-    return total
-
-
-def angle_of(converter: Converter, place: int, power: Fraction) -> sp.Expr:
-    monomial, denominator = list(converter.found.angles.items())[place - len(converter.found.symbols)]
-    share = sp.Rational(power.numerator, power.denominator * denominator)
-    return share * monomial_expression(monomial)
-
-
-def monomial_expression(monomial: Monomial) -> sp.Expr:
-    """The monomial as a product of powers."""
-    return sp.Mul(*(sp.Pow(base, to_rational(e)) for base, e in monomial))
-
-
-def real_generators(converter: Converter, exponents: Exponents) -> sp.Expr:
-    """Product of the powers of symbols and real exponentials in one term."""
-    found, value = converter.found, sp.Integer(1)
-    for place, (symbol, q) in enumerate(found.symbols.items()):
-        value *= sp.Pow(symbol, sp.Rational(exponents[place], q))
-    start = len(found.symbols) + len(found.angles)
-    for place, (monomial, denominator) in enumerate(found.exponents.items()):
-        power = sp.Rational(exponents[start + place], denominator)
-        value *= sp.exp(power * monomial_expression(monomial))
-    return value
+    """One term of a real form: the cosine or sine of what is left of its angles, times its symbols and exponentials."""
+    angle, share = sp.Integer(0), to_rational(c)
+    for k, ((kind, base), q) in enumerate(zip(bases, powers, strict=True)):
+        if kind == "cis":
+            angle += to_rational(q - middle[k]) * base
+        elif kind != "turn":
+            share *= base ** to_rational(q) if kind == "symbol" else sp.exp(to_rational(q) * base)
+    return share * (sp.cos if parity == 1 else sp.sin)(angle)

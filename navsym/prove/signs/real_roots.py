@@ -16,7 +16,7 @@ from flint import fmpq, fmpq_poly, fmpz_poly
 
 from navsym.core.balls import exact_ball, precision
 from navsym.core.exact import to_fmpq, to_rational
-from navsym.prove.identities.numbers import is_zero
+from navsym.prove.identities import is_zero
 
 #: Bits of a first enclosure, and those beyond which two numbers stay undecided.
 FIRST_BITS, MOST_BITS = 64, 8192

@@ -1,1 +1,0 @@
-"""Equal or not: normal forms of quotients, exponentials, angles and roots."""
