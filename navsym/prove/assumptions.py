@@ -8,9 +8,7 @@ from collections.abc import Callable, Sequence
 import sympy as sp
 
 from navsym.claims.statement import Box
-from navsym.prove.sampling.points import ranges_of
 from navsym.prove.signs.bounds import Sign, prove_sign
-from navsym.prove.signs.one_variable import survey_signs
 from navsym.prove.wording import expression_text
 
 #: What is not defined everywhere.
@@ -61,18 +59,9 @@ def is_nonnegative(expression: sp.Basic, box: Box) -> bool:
     return prove_sign(expression, box).at_least(Sign.NONNEGATIVE)
 
 
-def has_no_zeros(expression: sp.Basic, box: Box) -> bool:
-    """True when exact real roots show that an expression in one symbol is zero nowhere in its range."""
-    found = list(ranges_of(list(expression.free_symbols), box).values())
-    known = survey_signs(expression, found[0]) if len(found) == 1 else None
-    return known is not None and all(found[0].nonzero and zero.at == 0 for zero in known.zeros)
-
-
 def is_nonzero(expression: sp.Basic, box: Box) -> bool:
     """True when the expression is proved to vanish nowhere on the box."""
-    if has_no_zeros(expression, box):
-        return True
-    return is_positive(expression, box) or is_positive(-expression, box)
+    return prove_sign(expression, box, Sign.NONZERO).at_least(Sign.NONZERO)
 
 
 #: What is taken for granted of the sides: where it is found, in words, and when the box guarantees it.

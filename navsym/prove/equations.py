@@ -17,13 +17,12 @@ from navsym.claims.verdict import CERTIFIED, CONFIRMED, OPEN, PROVED, REFUTED, V
 from navsym.core.balls import UnsupportedError, enclose, exact_ball, precision
 from navsym.prove.assumptions import remaining_assumptions
 from navsym.prove.identities import has_unique_form, is_zero, vanishes_identically
-from navsym.prove.one_symbol import decide_by_roots
 from navsym.prove.sampling.points import Sample, search_counterexample
-from navsym.prove.sampling.second_look import BITS, Look, look_again
-from navsym.prove.signs.bounds import Sign, prove_sign
+from navsym.prove.sampling.second_look import BITS, Look, look_again, look_at_places
 from navsym.prove.wording import decimal_ends, refute_at_point, scope_of
 
 ENOUGH_POINTS = 32
+UNBROKEN = "no sign between real roots contradicts it; no proof was found"
 TURNS = 120  # radians: twenty turns of a wave
 
 
@@ -78,13 +77,18 @@ def decide_entry(printed: sp.Expr, derived: sp.Expr, statement: Equation) -> Ver
         if statement.tolerance is not None:
             return decide_numeral(printed, derived, statement)
         sample = search_counterexample(
-            printed - derived, lambda b: not b.contains(0), box, sides=finite_sides(printed, derived, statement)
+            printed - derived, excludes_zero, box, sides=finite_sides(printed, derived, statement)
         )
         if sample.counterexample is not None:
             return refute_by_sample(sample)
         return prove_equal(printed, derived, statement, sample)
     except UnsupportedError as error:
         return Verdict(OPEN, "none", scope_of(printed - derived, box), evidence=str(error))
+
+
+def excludes_zero(ball: arb) -> bool:
+    """Whether a ball breaks an equation."""
+    return not ball.contains(0)
 
 
 def finite_sides(printed: sp.Expr, derived: sp.Expr, statement: Equation) -> tuple[sp.Expr, ...]:
@@ -116,29 +120,18 @@ def decide_numeral(printed: sp.Expr, derived: sp.Expr, statement: Equation) -> V
         return refute_by_sample(sample)
     if sample.points == 0:  # what exists nowhere is near to everything
         return judge_sample(sample, scope_of(difference, box), f"within {tolerance}")
+    sides, scope, what = finite_sides(printed, derived, statement), scope_of(difference, box), f"within {tolerance}"
     for side in (tolerance - difference, tolerance + difference):
-        if prove_sign(side, box).at_least(Sign.NONNEGATIVE):
-            continue
-        decided = decide_by_roots(side, ">=", box, scope_of(difference, box), finite_sides(printed, derived, statement))
-        if decided is not None and decided.status == PROVED:
-            continue
-        look = look_again(
-            difference,
-            is_beyond,
-            box,
-            finite_sides(printed, derived, statement),
-            goals=(tolerance - difference, tolerance + difference),
-        )
-        judged = decided or judge_look(look, sample, scope_of(difference, box), f"within {tolerance}")
-        doubt = find_beats(difference, box) if judged.status == CONFIRMED else ""
-        return replace(judged, status=OPEN, evidence=doubt) if doubt else judged
-    return Verdict(
-        CERTIFIED,
-        method="ball arithmetic",
-        scope=scope_of(sp.Tuple(printed, derived), box),
-        assumptions=assumptions_of(printed, derived, statement),
-        evidence=f"|printed - derived| <= {tolerance} everywhere on the box",
-    )
+        look = look_at_places(side, lambda ball: bool(ball < 0), box, sides)
+        if look is not None and look.counterexample is not None:
+            return judge_look(look, sample, scope, what)
+    if not difference.free_symbols:
+        return judge_sample(sample, scope, what)
+    goals = (tolerance - difference, tolerance + difference)
+    judged = judge_look(look_again(difference, is_beyond, box, sides, goals=goals), sample, scope, what)
+    doubt = find_beats(difference, box) if judged.status == CONFIRMED else ""
+    judged = replace(judged, status=OPEN, evidence=doubt) if doubt else judged
+    return replace(judged, assumptions=assumptions_of(printed, derived, statement))
 
 
 def assumptions_of(printed: sp.Expr, derived: sp.Expr, statement: Equation) -> tuple[str, ...]:
@@ -172,10 +165,9 @@ def decide_unproved(printed: sp.Expr, derived: sp.Expr, statement: Equation, sam
     """What no rung proves: broken by a second look, or sampled; OPEN when the normal form denies it."""
     difference, scope = printed - derived, scope_of(printed - derived, statement.box)
     sides = finite_sides(printed, derived, statement)
-    decided = decide_by_roots(difference, "=", statement.box, scope, sides)
-    if decided is not None:
-        return decided
-    look = look_again(difference, lambda ball: not ball.contains(0), statement.box, sides)
+    look = look_at_places(difference, excludes_zero, statement.box, sides)
+    if look is None:
+        look = look_again(difference, excludes_zero, statement.box, sides)
     verdict = judge_look(look, sample, scope, "equality")
     if verdict.status == REFUTED:
         return verdict

@@ -336,7 +336,8 @@ def grant_proofs(documents: Sequence[Document], verdict: Verdict, seconds: float
     if verdict.status.holds:
         return replace(verdict, certificate=whole)
     rules = sorted({rule for certificate in certificates for rule in rules_of(certificate["proofs"])})
-    status = CERTIFIED if "balls" in rules else PROVED
+    is_numeral = any(document.get("tolerance") is not None for document in documents)
+    status = CERTIFIED if "balls" in rules or is_numeral else PROVED
     words = f"a proof by the rules {', '.join(rules)}"
     return replace(verdict, status=status, method="proof tree", evidence=words, certificate=whole)
 

@@ -14,6 +14,7 @@ from navsym.core.balls import UnsupportedError
 from navsym.core.errors import DomainError
 from navsym.prove.assumptions import remaining_assumptions
 from navsym.prove.equations import (
+    UNBROKEN,
     decide_equation,
     find_beats,
     judge_look,
@@ -22,9 +23,8 @@ from navsym.prove.equations import (
     refute_by_sample,
     shape_of,
 )
-from navsym.prove.one_symbol import decide_by_roots
-from navsym.prove.sampling.points import Sample, search_counterexample
-from navsym.prove.sampling.second_look import Look, look_again
+from navsym.prove.sampling.points import search_counterexample
+from navsym.prove.sampling.second_look import Look, look_again, look_at_places
 from navsym.prove.wording import point_text, scope_of
 
 #: relation -> when a finite ball of printed - derived contradicts it.
@@ -42,7 +42,7 @@ STRICT = ("<", ">", "!=")
 
 
 def decide_bound(statement: Bound) -> Verdict:
-    """Verdict of an inequality by samples and real roots; ``=`` is handed to the equations."""
+    """Verdict of an inequality by what may break it; ``=`` is handed to the equations."""
     if statement.relation == "=":
         return decide_equation(Equation(statement.printed, statement.derived, statement.box, exists=statement.exists))
     if statement.relation not in EXCLUDES:
@@ -76,30 +76,30 @@ def difference_of(statement: Bound) -> sp.Expr:
 def decide_difference(
     difference: sp.Expr, relation: str, box: Box, scope: str, sides: Sequence[sp.Expr] = ()
 ) -> Verdict:
-    """Verdict of ``difference relation 0``: broken by a point where the sides exist, decided by real roots, or OPEN."""
+    """Verdict of ``difference relation 0``: broken by a point where the sides exist, CONFIRMED, or OPEN.
+
+    Never CONFIRMED across a change of sign.
+    """
     sample = search_counterexample(difference, EXCLUDES[relation], box, sides=sides)
     if sample.points == 0:
         return judge_sample(sample, scope, f"printed {relation} derived")
     if sample.counterexample is not None:
         return refute_by_sample(sample)
-    decided = decide_by_roots(difference, relation, box, scope, sides)
-    if decided is not None:
-        return decided
-    return decide_unproved_relation(difference, relation, box, scope, sides, sample)
-
-
-def decide_unproved_relation(
-    difference: sp.Expr, relation: str, box: Box, scope: str, sides: Sequence[sp.Expr], sample: Sample
-) -> Verdict:
-    """What has no proof of sign: broken by a second look, or sampled; never CONFIRMED across a change of sign."""
-    low = -difference if "<" in relation else difference
-    goals = (difference**2, difference, -difference) if relation == "!=" else (low,)
-    look = look_again(difference, EXCLUDES[relation], box, sides, relation in STRICT, goals)
-    doubt = doubt_of(look, relation)
-    if not doubt and look.counterexample is None:
-        doubt = find_beats(difference, box)
-    if doubt:
-        return Verdict(OPEN, "sampling", scope, evidence=doubt)
+    look = look_at_places(difference, EXCLUDES[relation], box, sides, relation in STRICT)
+    if look is not None and look.touching is not None:  # false, without a point that could be written down
+        words = doubt_of(look, relation)
+        return Verdict(REFUTED, "real roots", "one point", evidence=words, counterexample={})
+    if look is not None and look.counterexample is None:
+        return Verdict(OPEN, "real roots", scope, evidence=UNBROKEN)
+    if look is None:
+        low = -difference if "<" in relation else difference
+        goals = (difference**2, difference, -difference) if relation == "!=" else (low,)
+        look = look_again(difference, EXCLUDES[relation], box, sides, relation in STRICT, goals)
+        doubt = doubt_of(look, relation)
+        if not doubt and look.counterexample is None:
+            doubt = find_beats(difference, box)
+        if doubt:
+            return Verdict(OPEN, "sampling", scope, evidence=doubt)
     return judge_look(look, sample, scope, f"printed {relation} derived")
 
 

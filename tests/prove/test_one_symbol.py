@@ -11,7 +11,6 @@ from navsym.checker import check
 from navsym.claims import CONFIRMED, OPEN, PROVED, REFUTED, Bound, Equation, Optimum
 from navsym.prove.ladder import decide
 from navsym.prove.signs.bounds import Sign, prove_sign
-from navsym.prove.signs.real_roots import compare_numbers, enclose_number, find_real_roots, number_between
 from tests.prove.one_symbol import random_case, verdict_against
 from tests.sampling import thinned
 
@@ -129,17 +128,6 @@ def test_poles_of_a_dual_that_the_functional_does_not_meet_are_assumptions():
     one, zero = sp.Integer(1), sp.Integer(0)
     verdict = decide(Optimum(regressors, (one, zero), t, (zero, T), dual, (zero,), (one,), one))
     assert verdict.status == PROVED and verdict.assumptions == ("T - 1 != 0",)
-
-
-def test_places_are_ordered_and_equal_ones_are_found():
-    from flint import fmpq, fmpq_poly
-
-    near = find_real_roots([fmpq_poly([-2, 0, 1]), fmpq_poly([fmpq(-2) - fmpq(1, 10**60), 0, 1])])
-    root = enclose_number(sp.sqrt(2))
-    assert sorted(compare_numbers(place, root) for place in near) == [-1, -1, 0, 1]
-    assert compare_numbers(enclose_number(sp.sqrt(3 + 2 * sp.sqrt(2))), enclose_number(1 + sp.sqrt(2))) == 0
-    low, high = enclose_number(sp.pi), enclose_number(sp.pi + THIN)
-    assert compare_numbers(low, high) == -1 and number_between(low, high) is not None
 
 
 @pytest.mark.parametrize(

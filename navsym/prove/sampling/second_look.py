@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import itertools
 import math
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from fractions import Fraction
 from functools import partial
@@ -20,12 +20,14 @@ import sympy as sp
 from flint import arb
 
 from navsym.claims.statement import Box
-from navsym.core.balls import UnsupportedError, enclose, exact_ball, tape
+from navsym.core.balls import UnsupportedError, enclose, exact_ball, precision, tape
+from navsym.core.errors import NavsymError
 from navsym.core.exact import to_fmpq, to_rational
 from navsym.prove.identities import is_zero
 from navsym.prove.rooms.goals import factor
 from navsym.prove.sampling.descent import Guess, find_lowest
 from navsym.prove.sampling.points import AWKWARD, Point, Range, draw_points, ranges_of, value_at
+from navsym.prove.sampling.real_roots import Root, list_places
 
 # Exact points at which a factor of an expression vanishes: (x + y - 3)**2 > 0 fails on a whole line.
 #
@@ -234,6 +236,60 @@ def look_again(
     return replace(found, positive=positive, negative=negative, touching=touching)
 
 
+def look_at_places(
+    difference: sp.Expr,
+    excludes: Callable[[arb], bool],
+    box: Box,
+    sides: Sequence[sp.Expr] = (),
+    zero_breaks: bool = False,
+) -> Look | None:
+    """A look at all signs of a difference in one symbol, by its real roots; None where these do not tell them all."""
+    limits = ranges_of(sorted(difference.free_symbols | set().union(*(s.free_symbols for s in sides)), key=str), box)
+    if len(limits) != 1 or not difference.free_symbols:
+        return None
+    ((symbol, limit),) = limits.items()
+    try:
+        places = list_places(difference, sides, limit)
+        if places is None:
+            return None
+
+        def find(values: Iterable[sp.Expr]) -> Iterator[Point]:
+            there = ({symbol: value} for value in values if limit.contains(value))
+            return (point for point in there if all(exists_at(side, point) for side in sides))
+
+        for point in filter(None, (next(find(numbers), None) for numbers in places.between)):
+            ball = find_sign_ball(difference, point)
+            if ball is None and zero_breaks and is_zero_at(difference, point):
+                return Look(point, arb(0), exact=True)
+            if ball is not None and excludes(ball):
+                return Look(point, ball)
+        if zero_breaks:
+            for point in find(root.at for root in places.roots if root.at is not None):
+                if is_zero_at(difference, point):
+                    return Look(point, arb(0), exact=True)
+            if hidden := find_hidden_zero(difference, symbol, places.roots):
+                return Look(touching=hidden)
+    except (UnsupportedError, NavsymError):
+        return None
+    return Look() if places.complete else None
+
+
+def find_sign_ball(difference: sp.Expr, point: Point) -> arb | None:
+    """A ball of the difference that tells its sign, with as many bits as that takes; None where none does."""
+    balls = (value_at(tape(difference), point, bits) for bits in (BITS, 16 * BITS))
+    return next((ball for ball in balls if ball.is_finite() and not ball.contains(0)), None)
+
+
+def find_hidden_zero(difference: sp.Expr, symbol: sp.Symbol, roots: Sequence[Root]) -> Point | None:
+    """A place beside a root without a formula at which the difference may be zero."""
+    for root in (root for root in roots if root.at is None):
+        with precision(BITS):
+            ball = enclose(tape(difference), {symbol: arb(root.lower).union(arb(root.upper))}, BITS)
+        if ball.is_finite() and ball.contains(0):
+            return {symbol: to_rational((root.lower + root.upper) / 2)}
+    return None
+
+
 def look_close(
     difference: sp.Expr,
     excludes: Callable[[arb], bool],
@@ -243,10 +299,10 @@ def look_close(
 ) -> Look:
     """Look beside zeros and far out: a counterexample, or a place where a goal still falls."""
     programs, falling = [tape(part) for part in (difference, *goals, *sides)], None
-    for points, bits in itertools.islice(approaches(difference, limits), MOST_APPROACHES):
+    for points, sizes in itertools.islice(approaches(difference, limits), MOST_APPROACHES):
         rows: list[list[arb]] = []
-        for point, precision in zip(points, bits, strict=False):
-            rows.append([value_at(program, point, precision) for program in programs])
+        for point, bits in zip(points, sizes, strict=False):
+            rows.append([value_at(program, point, bits) for program in programs])
             if not all(ball.is_finite() for ball in rows[-1]):
                 break
             if excludes(rows[-1][0]):

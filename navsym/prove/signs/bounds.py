@@ -18,20 +18,19 @@ from navsym.core.errors import NavsymError
 from navsym.language.expression import to_text
 from navsym.prove.rooms.goals import player
 from navsym.prove.sampling.points import Range, ranges_of, value_at, write_range
-from navsym.prove.sampling.second_look import zeros_of
+from navsym.prove.sampling.second_look import Look, look_at_places, zeros_of
 from navsym.prove.search import SIGN_ROUNDS, Rounds, find_proof, rules_of
 from navsym.prove.signs.exact import UNKNOWN, Sign, SignProof, constant_sign
-from navsym.prove.signs.one_variable import survey_signs
 from navsym.prove.signs.products import as_product
 
 BITS = 128
-RELATIONS = {Sign.NONNEGATIVE: ">=", Sign.POSITIVE: ">"}
+RELATIONS = {Sign.NONNEGATIVE: ">=", Sign.POSITIVE: ">", Sign.NONZERO: "!="}
 
 
 def prove_sign(
     expression: sp.Expr, box: Box, wanted: Sign = Sign.NONNEGATIVE, rounds: Rounds = SIGN_ROUNDS
 ) -> SignProof:
-    """Prove that the expression has a value everywhere on the box and is nonnegative (or positive), or return unknown.
+    """Prove that the expression has a value everywhere on the box and a sign there, or return unknown.
 
     A product form of it is tried as well.
     """
@@ -57,19 +56,19 @@ def prove_sign(
 
 
 def is_known_to_fail(expression: sp.Expr, limits: Mapping[sp.Symbol, Range], wanted: Sign) -> bool:
-    """Whether real roots, or a zero that is met, show that an expression in one symbol has another sign somewhere."""
+    """Whether a place is known at which an expression in one symbol has another sign."""
     if len(limits) != 1:
         return False
     ((symbol, limit),) = limits.items()
-    places = [limit.lower, limit.upper, *zeros_of(expression, symbol, {})] if wanted == Sign.POSITIVE else []
+    is_strict = wanted != Sign.NONNEGATIVE
+    places = [limit.lower, limit.upper, *zeros_of(expression, symbol, {})] if is_strict else []
     known = [place for place in places if place is not None and limit.contains(place)]
     values = [value_at(tape(expression), {symbol: place}) for place in known]
     if any(value.is_finite() and value.contains(0) for value in values):
         return True
-    found = survey_signs(expression, limit)
-    if found is None or wanted == Sign.NONNEGATIVE:
-        return found is not None and bool(found.below)
-    return bool(found.below) or any(not (limit.nonzero and zero.at == 0) for zero in found.zeros)
+    is_below = (lambda ball: False) if wanted == Sign.NONZERO else (lambda ball: bool(ball < 0))
+    look = look_at_places(expression, is_below, {symbol: (limit.lower, limit.upper)}, (), is_strict)
+    return look is not None and look != Look()
 
 
 def prove_conditions(expression: sp.Expr, limits: Mapping[sp.Symbol, Range], rounds: Rounds) -> bool | None:

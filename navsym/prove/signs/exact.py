@@ -16,7 +16,8 @@ class Sign(IntEnum):
 
     UNKNOWN = 0
     NONNEGATIVE = 1
-    POSITIVE = 2
+    NONZERO = 2
+    POSITIVE = 3
 
 
 @dataclass(frozen=True, slots=True)
@@ -28,7 +29,8 @@ class SignProof:
     exact: bool = False  # no balls were used
 
     def at_least(self, wanted: Sign) -> bool:
-        return self.sign >= wanted
+        """Whether the known sign gives the wanted one; what is nonzero may be negative."""
+        return self.sign in (wanted, Sign.POSITIVE)
 
 
 UNKNOWN = SignProof(Sign.UNKNOWN)
@@ -41,7 +43,7 @@ def constant_sign(expression: sp.Expr) -> SignProof:
         if ball > 0:
             return SignProof(Sign.POSITIVE, "a positive number", exact=True)
         if ball < 0:
-            return UNKNOWN
+            return SignProof(Sign.NONZERO, "a negative number", exact=True)
     if is_zero(expression):
         return SignProof(Sign.NONNEGATIVE, "zero", exact=True)
     return UNKNOWN
