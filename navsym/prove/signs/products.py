@@ -33,12 +33,12 @@ def as_product(expression: sp.Expr) -> sp.Expr | None:
     if not expression.has(sp.sin, sp.cos, sp.tan, sp.cot, sp.sec, sp.csc):
         return None
     try:
-        top, bottom = map(real_factors, sp.fraction(sp.together(TR2(TR1(expression)))))
+        found = real_factors(sp.fraction(sp.together(TR2(TR1(expression)))))
     except (NavsymError, player.Refused):
         return None
-    if top is None or bottom is None or len(top) + len(bottom) < 2:
+    if found is None or sum(map(len, found)) < 2:
         return None
-    product = sp.Mul(*top) / sp.Mul(*bottom)
+    product = sp.Mul(*found[0]) / sp.Mul(*found[1])
     product = product.xreplace({symbol(own.name): own for own in expression.free_symbols})
     # The phases left out of the factors multiply to a rational constant.
     product *= constant_ratio(expression, product)
@@ -71,27 +71,35 @@ def constant_ratio(expression: sp.Expr, product: sp.Expr) -> sp.Rational:
     return to_rational(ratio or Fraction(1))
 
 
-def real_factors(expression: sp.Expr) -> list[sp.Expr] | None:
-    """Real forms of the irreducible factors, without their phases and constants; None where one has none."""
-    term = read_term(expression)
-    number = player.evaluate(term, player.make_symbols(sorted(player.symbols_of(term))), player.Exact).parts[0]
-    number = number.divide_turns()
-    known = {atom: read_atom(atom) for monomial in number.terms for atom, _ in monomial}
-    if not number.terms or None in known.values():
+def real_factors(sides: tuple[sp.Expr, sp.Expr]) -> list[list[sp.Expr]] | None:
+    """Real forms of the irreducible factors of a quotient in lowest terms, without phases and constants."""
+    numbers = [player.evaluate(t, player.make_symbols(sorted(player.symbols_of(t))), player.Exact).parts[0].divide_turns()
+               for t in map(read_term, sides)]  # fmt: skip
+    known = {atom: read_atom(atom) for number in numbers for monomial in number.terms for atom, _ in monomial}
+    if not all(number.terms for number in numbers) or None in known.values():
         return None
     atoms = sorted(known, key=lambda atom: sp.default_sort_key(sp.Tuple(sp.Symbol(known[atom][0]), known[atom][1])))
-    bases = [known[atom] for atom in atoms]
-    rows = {tuple(fmpq(dict(m).get(atom, 0)) for atom in atoms): c for m, c in number}
-    low = [min(powers) for powers in zip(*rows, strict=True)]
-    sizes = [lcm(*(int(q.q) for q in powers)) for powers in zip(*rows, strict=True)]
+    rows = [{tuple(fmpq(dict(m).get(atom, 0)) for atom in atoms): c for m, c in number} for number in numbers]
+    sizes = [lcm(*(int(q.q) for q in powers)) for powers in zip(*rows[0], *rows[1], strict=True)]
+    low = [tuple(map(min, zip(*row, strict=True))) for row in rows]
     ring = fmpq_mpoly_ctx.get([f"g{k}" for k in range(len(atoms))], Ordering.lex)
-    whole = {tuple(int((q - b) * n) for q, b, n in zip(row, low, sizes, strict=True)): c for row, c in rows.items()}
-    factors = [({tuple(low): fmpq(1)}, 1)]
-    for polynomial, power in factor_exactly(ring.from_dict(whole))[1]:
-        terms = polynomial.to_dict().items()
-        factors.append(({tuple(fmpq(e, n) for e, n in zip(m, sizes, strict=True)): c for m, c in terms}, int(power)))
-    real = [(real_form(bases, terms), power) for terms, power in factors]  # type: ignore[arg-type]
-    return None if any(form is None for form, _ in real) else [form**power for form, power in real if form != 1]
+
+    def whole(powers: Powers, start: Powers) -> tuple[int, ...]:
+        return tuple(int((q - q0) * n) for q, q0, n in zip(powers, start, sizes, strict=True))
+
+    polynomials = [ring.from_dict({whole(m, start): c for m, c in row.items()}) for row, start in zip(rows, low, strict=True)]
+    common = polynomials[0].gcd(polynomials[1])
+    found = []
+    for polynomial, start in zip(polynomials, low, strict=True):
+        factors = [({start: fmpq(1)}, 1)]
+        for factor, power in factor_exactly(polynomial / common)[1]:
+            terms = {tuple(fmpq(e, n) for e, n in zip(m, sizes, strict=True)): c for m, c in factor.to_dict().items()}
+            factors.append((terms, int(power)))
+        real = [(real_form([known[atom] for atom in atoms], terms), power) for terms, power in factors]
+        if any(form is None for form, _ in real):
+            return None
+        found.append([form**power for form, power in real if form != 1])
+    return found
 
 
 def read_atom(atom: Any) -> tuple[str, sp.Expr] | None:
