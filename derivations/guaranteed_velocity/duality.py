@@ -7,7 +7,7 @@ import sympy as sp
 from navsym.claims import PROVED, Bound, Equation, Finding, Property, claim, state
 from navsym.language.expression import to_text
 from navsym.prove.identities import vanishes_identically
-from navsym.prove.signs.bounds import Sign, prove_sign
+from navsym.prove.signs import Sign, prove_sign
 from navsym_papers.guaranteed_velocity.model import INSTANTS, STATED, H, T, alternating, tau, weights
 
 sigma = sp.Symbol("sigma", positive=True)

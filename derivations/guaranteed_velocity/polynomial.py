@@ -5,7 +5,7 @@ import sympy as sp
 from navsym.claims import PROVED, Bound, Equation, Finding, Optimum, Property, claim, fact, state
 from navsym.language.expression import to_text
 from navsym.prove.identities import vanishes_identically
-from navsym.prove.signs.bounds import Sign, prove_sign
+from navsym.prove.signs import Sign, prove_sign
 from navsym_papers.guaranteed_velocity.model import INSTANTS, STATED, H, T, alternating, optimum, tau, weights
 
 U2_PRINTED = sp.sin(T / 4) ** 2 / sp.cos(T / 2)

@@ -23,7 +23,7 @@ from navsym.core.rational_functions import factor_exactly, polynomial_sum
 from navsym.observability.linear import Matrix
 from navsym.observability.motion import Motion
 from navsym.observability.ring import Hashed, Poly, Ring, divide, gcd_all, irreducible_factors, is_divisor
-from navsym.prove.signs.bounds import Sign, prove_sign
+from navsym.prove.signs import Sign, prove_sign
 
 # Common real zeros of polynomials as a list of simple systems.
 #

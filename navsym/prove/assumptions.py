@@ -8,7 +8,7 @@ from collections.abc import Callable, Sequence
 import sympy as sp
 
 from navsym.claims.statement import Box
-from navsym.prove.signs.bounds import Sign, prove_sign
+from navsym.prove.signs import Sign, prove_sign
 from navsym.prove.wording import expression_text
 
 #: What is not defined everywhere.

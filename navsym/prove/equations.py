@@ -125,8 +125,6 @@ def decide_numeral(printed: sp.Expr, derived: sp.Expr, statement: Equation) -> V
         look = look_at_places(side, lambda ball: bool(ball < 0), box, sides)
         if look is not None and look.counterexample is not None:
             return judge_look(look, sample, scope, what)
-    if not difference.free_symbols:
-        return judge_sample(sample, scope, what)
     goals = (tolerance - difference, tolerance + difference)
     judged = judge_look(look_again(difference, is_beyond, box, sides, goals=goals), sample, scope, what)
     doubt = find_beats(difference, box) if judged.status == CONFIRMED else ""

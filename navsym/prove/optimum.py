@@ -21,8 +21,8 @@ from navsym.claims.verdict import CERTIFIED, OPEN, PROVED, Status, Verdict
 from navsym.prove.assumptions import is_nonnegative, remaining_assumptions
 from navsym.prove.equations import decide_equation, weakest_verdict
 from navsym.prove.inequalities import decide_difference
-from navsym.prove.signs.bounds import Sign, SignProof, prove_sign
-from navsym.prove.signs.products import as_product, as_squares
+from navsym.prove.products import as_product, as_squares
+from navsym.prove.signs import Sign, SignProof, prove_sign
 from navsym.prove.wording import scope_of
 
 #: Position inside the interval: t = start + (end - start) * share.

@@ -24,7 +24,7 @@ from navsym.guaranteed.phases.recognise import recognise_constant
 from navsym.guaranteed.phases.singular_values import exact_real_roots
 from navsym.guaranteed.solver import solve
 from navsym.models.modelfile import model_from
-from navsym.prove.signs.products import as_squares
+from navsym.prove.products import as_squares
 
 
 def basis(H, interval, target, sigma=None):

@@ -10,7 +10,7 @@ import sympy as sp
 from navsym.checker import check
 from navsym.claims import CONFIRMED, OPEN, PROVED, REFUTED, Bound, Equation, Optimum
 from navsym.prove.ladder import decide
-from navsym.prove.signs.bounds import Sign, prove_sign
+from navsym.prove.signs import Sign, prove_sign
 from tests.prove.one_symbol import random_case, verdict_against
 from tests.sampling import thinned
 

@@ -11,7 +11,7 @@ from navsym.claims import PROVED, Equation
 from navsym.prove.identities import is_zero
 from navsym.prove.ladder import decide
 from navsym.prove.search import EASY
-from navsym.prove.signs.bounds import Sign, prove_sign
+from navsym.prove.signs import Sign, prove_sign
 
 x, y, z = sp.symbols("x y z", real=True)
 T = sp.Symbol("T", positive=True)

@@ -10,8 +10,7 @@ import sympy as sp
 from navsym.prove import search
 from navsym.prove.rooms import signs
 from navsym.prove.rooms.goals import player
-from navsym.prove.signs import bounds
-from navsym.prove.signs.bounds import Sign, prove_sign
+from navsym.prove.signs import Sign, bounds, prove_sign
 
 T, SHARE = sp.symbols("T share", real=True)
 BOX = {T: (sp.Integer(1), 1 + sp.pi / 4), SHARE: (0, 1)}

@@ -18,7 +18,7 @@ from navsym.core.errors import DomainError
 from navsym.prove.claimfile import claims_from, decide_claims
 from navsym.prove.ladder import decide
 from navsym.prove.search import EASY
-from navsym.prove.signs.bounds import Sign, prove_sign
+from navsym.prove.signs import Sign, prove_sign
 
 x = sp.Symbol("x", real=True)
 T = sp.Symbol("T", positive=True)

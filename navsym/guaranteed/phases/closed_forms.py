@@ -29,7 +29,7 @@ from navsym.guaranteed.phases.recognise import recognise_place
 from navsym.prove.equations import decide_equation, weakest_verdict
 from navsym.prove.ladder import DEFAULT_MEGABYTES, search_verdict
 from navsym.prove.optimum import decide_feasibility, decide_times, decide_values
-from navsym.prove.signs.products import as_product
+from navsym.prove.products import as_product
 
 # Closed forms for monomials on [0, T]: shares of the interval, powers of T, and Lagrange's weights.
 #

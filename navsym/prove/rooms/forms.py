@@ -13,9 +13,9 @@ from sympy.simplify.fu import TR8
 
 from navsym.core.errors import NavsymError
 from navsym.language.expression import symbol, to_text
+from navsym.prove.products import as_product
 from navsym.prove.rooms.equations import rewrite_atom
 from navsym.prove.rooms.goals import Hole, Holes, Proof, Term, abstract, factor, player, to_sympy, write_term
-from navsym.prove.signs.products import as_product
 
 #: Digits of a number up to which polynomials are factored.
 MOST_DIGITS = 40

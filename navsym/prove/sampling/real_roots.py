@@ -139,7 +139,7 @@ def enclose_roots(factor: fmpz_poly, bits: int) -> Iterator[Root]:
         yield Root(root, root, to_rational(root))
         return
     with precision(bits):
-        for root, _ in factor.complex_roots():  # type: ignore[misc]
+        for root in (pair[0] for pair in factor.complex_roots()):  # type: ignore[index]
             if root.imag == 0:
                 lower, upper = to_fmpq(root.real.lower()), to_fmpq(root.real.upper())
                 yield Root(lower, upper, find_surd(factor, lower + upper))

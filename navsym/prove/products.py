@@ -14,7 +14,7 @@ from math import lcm
 from typing import Any
 
 import sympy as sp
-from flint import Ordering, fmpq, fmpq_mpoly_ctx
+from flint import Ordering, fmpq, fmpq_mpoly, fmpq_mpoly_ctx
 from sympy.simplify.fu import TR1, TR2
 
 from navsym.core.errors import NavsymError
@@ -24,8 +24,9 @@ from navsym.language.expression import symbol
 from navsym.prove.identities import read_term, vanishes_identically
 from navsym.prove.rooms.goals import player
 
-#: A monomial: exponents of the atoms of the normal form.
+#: A monomial: exponents of the atoms of the normal form. What such an atom is of, and its kind.
 Powers = tuple[fmpq, ...]
+Base = tuple[str, sp.Expr]
 
 
 def as_product(expression: sp.Expr) -> sp.Expr | None:
@@ -73,36 +74,49 @@ def constant_ratio(expression: sp.Expr, product: sp.Expr) -> sp.Rational:
 
 def real_factors(sides: tuple[sp.Expr, sp.Expr]) -> list[list[sp.Expr]] | None:
     """Real forms of the irreducible factors of a quotient in lowest terms, without phases and constants."""
-    numbers = [player.evaluate(t, player.make_symbols(sorted(player.symbols_of(t))), player.Exact).parts[0].divide_turns()
-               for t in map(read_term, sides)]  # fmt: skip
-    known = {atom: read_atom(atom) for number in numbers for monomial in number.terms for atom, _ in monomial}
-    if not all(number.terms for number in numbers) or None in known.values():
+    numbers = [read_exact(side) for side in sides]
+    atoms = list({atom for number in numbers for monomial in number.terms for atom, _ in monomial})
+    known = [(read_atom(atom), atom) for atom in atoms]
+    if not all(number.terms for number in numbers) or any(base is None for base, _ in known):
         return None
-    atoms = sorted(known, key=lambda atom: sp.default_sort_key(sp.Tuple(sp.Symbol(known[atom][0]), known[atom][1])))
+    known.sort(key=lambda pair: sp.default_sort_key(sp.Tuple(sp.Symbol(pair[0][0]), pair[0][1])))  # type: ignore[index]
+    bases, atoms = [base for base, _ in known if base], [atom for _, atom in known]
     rows = [{tuple(fmpq(dict(m).get(atom, 0)) for atom in atoms): c for m, c in number} for number in numbers]
     sizes = [lcm(*(int(q.q) for q in powers)) for powers in zip(*rows[0], *rows[1], strict=True)]
     low = [tuple(map(min, zip(*row, strict=True))) for row in rows]
     ring = fmpq_mpoly_ctx.get([f"g{k}" for k in range(len(atoms))], Ordering.lex)
-
-    def whole(powers: Powers, start: Powers) -> tuple[int, ...]:
-        return tuple(int((q - q0) * n) for q, q0, n in zip(powers, start, sizes, strict=True))
-
-    polynomials = [ring.from_dict({whole(m, start): c for m, c in row.items()}) for row, start in zip(rows, low, strict=True)]
-    common = polynomials[0].gcd(polynomials[1])
-    found = []
-    for polynomial, start in zip(polynomials, low, strict=True):
-        factors = [({start: fmpq(1)}, 1)]
-        for factor, power in factor_exactly(polynomial / common)[1]:
-            terms = {tuple(fmpq(e, n) for e, n in zip(m, sizes, strict=True)): c for m, c in factor.to_dict().items()}
-            factors.append((terms, int(power)))
-        real = [(real_form([known[atom] for atom in atoms], terms), power) for terms, power in factors]
-        if any(form is None for form, _ in real):
-            return None
-        found.append([form**power for form, power in real if form != 1])
-    return found
+    above, below = (
+        ring.from_dict({tuple(int(e) for e in scale(m, start, sizes)): c for m, c in row.items()})
+        for row, start in zip(rows, low, strict=True)
+    )
+    common = above.gcd(below)
+    found = [real_forms(bases, part / common, start, sizes) for part, start in zip((above, below), low, strict=True)]
+    return None if None in found else [forms for forms in found if forms is not None]
 
 
-def read_atom(atom: Any) -> tuple[str, sp.Expr] | None:
+def read_exact(expression: sp.Expr) -> Any:
+    """The normal form of an expression."""
+    term = read_term(expression)
+    names = player.make_symbols(sorted(player.symbols_of(term)))
+    return player.evaluate(term, names, player.Exact).parts[0].divide_turns()
+
+
+def scale(powers: Powers, start: Powers, sizes: list[int]) -> Powers:
+    """Whole exponents above the lowest ones."""
+    return tuple((q - low) * n for q, low, n in zip(powers, start, sizes, strict=True))
+
+
+def real_forms(bases: list[Base], polynomial: fmpq_mpoly, start: Powers, sizes: list[int]) -> list[sp.Expr] | None:
+    """Real forms of the factors of a polynomial times its lowest powers; None where one has none."""
+    forms = [real_form(bases, {start: fmpq(1)})]
+    for factor, power in factor_exactly(polynomial)[1]:
+        terms = {tuple(fmpq(int(e), n) for e, n in zip(m, sizes, strict=True)): c for m, c in factor.to_dict().items()}
+        form = real_form(bases, terms)
+        forms.append(None if form is None else form**power)
+    return None if None in forms else [form for form in forms if form != 1]
+
+
+def read_atom(atom: Any) -> Base | None:
     """The kind of an atom and what it is of: a symbol, exp or cis of a product of symbols and pi; None for others."""
     _, kind, content = atom
     if kind.startswith("symbol "):
@@ -121,7 +135,7 @@ def read_atom(atom: Any) -> tuple[str, sp.Expr] | None:
     return ("turn" if atom == player.TURN else kind), product
 
 
-def real_form(bases: list[tuple[str, sp.Expr]], terms: Mapping[Powers, fmpq]) -> sp.Expr | None:
+def real_form(bases: list[Base], terms: Mapping[Powers, fmpq]) -> sp.Expr | None:
     """A factor divided by its middle power: a sum of cosines, or i times a sum of sines."""
     places = [k for k, (kind, _) in enumerate(bases) if kind == "cis"]
     turns = [k for k, (kind, _) in enumerate(bases) if kind == "turn"]
@@ -135,9 +149,7 @@ def real_form(bases: list[tuple[str, sp.Expr]], terms: Mapping[Powers, fmpq]) ->
     return None
 
 
-def real_term(
-    bases: list[tuple[str, sp.Expr]], powers: Powers, middle: Mapping[int, fmpq], c: fmpq, parity: int
-) -> sp.Expr:
+def real_term(bases: list[Base], powers: Powers, middle: Mapping[int, fmpq], c: fmpq, parity: int) -> sp.Expr:
     """One term of a real form: the cosine or sine of what is left of its angles, times its symbols and exponentials."""
     angle, share = sp.Integer(0), to_rational(c)
     for k, ((kind, base), q) in enumerate(zip(bases, powers, strict=True)):

@@ -7,22 +7,48 @@ positive) there, and has the checker play it; what is not proved comes back as u
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from enum import IntEnum
 from typing import Any
 
 import sympy as sp
 
 from navsym import checker
 from navsym.claims.statement import Box
-from navsym.core.balls import UnsupportedError, precision, tape
+from navsym.core.balls import UnsupportedError, exact_ball, precision, tape
 from navsym.core.errors import NavsymError
 from navsym.language.expression import to_text
+from navsym.prove.identities import is_zero
+from navsym.prove.products import as_product
 from navsym.prove.rooms.goals import player
 from navsym.prove.sampling.points import Range, ranges_of, value_at, write_range
 from navsym.prove.sampling.second_look import Look, look_at_places, zeros_of
 from navsym.prove.search import SIGN_ROUNDS, Rounds, find_proof, rules_of
-from navsym.prove.signs.exact import UNKNOWN, Sign, SignProof, constant_sign
-from navsym.prove.signs.products import as_product
 
+
+class Sign(IntEnum):
+    """What is known of an expression on a box."""
+
+    UNKNOWN = 0
+    NONNEGATIVE = 1
+    NONZERO = 2
+    POSITIVE = 3
+
+
+@dataclass(frozen=True, slots=True)
+class SignProof:
+    """A sign with its reason."""
+
+    sign: Sign
+    reason: str = ""
+    exact: bool = False  # no balls were used
+
+    def at_least(self, wanted: Sign) -> bool:
+        """Whether the known sign gives the wanted one; what is nonzero may be negative."""
+        return self.sign in (wanted, Sign.POSITIVE)
+
+
+UNKNOWN = SignProof(Sign.UNKNOWN)
 BITS = 128
 RELATIONS = {Sign.NONNEGATIVE: ">=", Sign.POSITIVE: ">", Sign.NONZERO: "!="}
 
@@ -96,3 +122,16 @@ def prove_term(term: Any, relation: str, limits: Mapping[sp.Symbol, Range], roun
     with precision(BITS):
         checker.prove(proof, checker.Goal(term, relation, goal_of(checker.read_range)))
     return "balls" not in rules_of(proof)
+
+
+def constant_sign(expression: sp.Expr) -> SignProof:
+    """Sign of a number: by a ball, or exactly zero by the normal form."""
+    for bits in (64, 256, 1024):
+        ball = exact_ball(expression, bits)
+        if ball > 0:
+            return SignProof(Sign.POSITIVE, "a positive number", exact=True)
+        if ball < 0:
+            return SignProof(Sign.NONZERO, "a negative number", exact=True)
+    if is_zero(expression):
+        return SignProof(Sign.NONNEGATIVE, "zero", exact=True)
+    return UNKNOWN

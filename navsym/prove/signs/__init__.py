@@ -1,1 +1,0 @@
-"""Positive or not: exact signs, cones, half angles, derivatives, divided boxes."""
