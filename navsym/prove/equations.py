@@ -1,29 +1,42 @@
-"""Equations: first try to break them, then to prove them.
+"""Equations and inequalities: whatever may break one is tried; what nothing breaks is left to the search for a proof.
 
-An exact point where a ball excludes equality refutes; the normal form proves. What has neither but agrees at
-every sampled point is CONFIRMED, never more, until the search finds a proof.
+An exact point where a ball excludes the relation refutes; of an equation the normal form proves. What has neither but
+holds at every sampled point is CONFIRMED, never more, until a proof is found.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import sympy as sp
 from flint import arb
 
-from navsym.claims.statement import Box, Equation
+from navsym.claims.statement import Bound, Box, Equation
 from navsym.claims.verdict import CERTIFIED, CONFIRMED, OPEN, PROVED, REFUTED, Verdict
 from navsym.core.balls import UnsupportedError, enclose, exact_ball, precision
+from navsym.core.errors import DomainError
 from navsym.prove.assumptions import remaining_assumptions
 from navsym.prove.identities import has_unique_form, is_zero, vanishes_identically
 from navsym.prove.sampling.points import Sample, search_counterexample
 from navsym.prove.sampling.second_look import BITS, Look, look_again, look_at_places
-from navsym.prove.wording import decimal_ends, refute_at_point, scope_of
+from navsym.prove.wording import decimal_ends, point_text, refute_at_point, scope_of
 
 ENOUGH_POINTS = 32
-UNBROKEN = "no sign between real roots contradicts it; no proof was found"
 TURNS = 120  # radians: twenty turns of a wave
+
+#: relation -> when a finite ball of printed - derived contradicts it.
+EXCLUDES: dict[str, Callable[[arb], bool]] = {
+    "=": lambda ball: not ball.contains(0),
+    "<": lambda ball: bool(ball >= 0),
+    "<=": lambda ball: bool(ball > 0),
+    ">": lambda ball: bool(ball <= 0),
+    ">=": lambda ball: bool(ball < 0),
+    "!=": lambda ball: bool(ball == 0),
+}
+#: Relations that equality breaks.
+STRICT = ("<", ">", "!=")
+STRENGTH = (REFUTED, OPEN, CONFIRMED, CERTIFIED, PROVED)
 
 
 def decide_equation(statement: Equation) -> Verdict:
@@ -57,9 +70,6 @@ def list_entries(side: object) -> list[sp.Expr]:
     return [sp.sympify(side, strict=True)]
 
 
-STRENGTH = (REFUTED, OPEN, CONFIRMED, CERTIFIED, PROVED)
-
-
 def weakest_verdict(verdicts: Sequence[Verdict]) -> Verdict:
     """The weakest verdict of several entries; assumptions and counts are those of all."""
     weakest = min(verdicts, key=lambda verdict: STRENGTH.index(verdict.status))
@@ -72,107 +82,125 @@ def weakest_verdict(verdicts: Sequence[Verdict]) -> Verdict:
 
 
 def decide_entry(printed: sp.Expr, derived: sp.Expr, statement: Equation) -> Verdict:
-    box = statement.box
-    try:
-        if statement.tolerance is not None:
-            return decide_numeral(printed, derived, statement)
-        sample = search_counterexample(
-            printed - derived, excludes_zero, box, sides=finite_sides(printed, derived, statement)
-        )
-        if sample.counterexample is not None:
-            return refute_by_sample(sample)
-        return prove_equal(printed, derived, statement, sample)
-    except UnsupportedError as error:
-        return Verdict(OPEN, "none", scope_of(printed - derived, box), evidence=str(error))
-
-
-def excludes_zero(ball: arb) -> bool:
-    """Whether a ball breaks an equation."""
-    return not ball.contains(0)
-
-
-def finite_sides(printed: sp.Expr, derived: sp.Expr, statement: Equation) -> tuple[sp.Expr, ...]:
-    """What has to have a value at a point of the statement."""
-    divisors = (sp.sympify(part, strict=True) for part in statement.nonzero)
-    return (printed, derived, *statement.exists, *(1 / part for part in divisors if part != 0))
-
-
-def refute_by_sample(sample: Sample) -> Verdict:
-    """REFUTED by the point of a sample."""
-    assert sample.counterexample is not None and sample.difference is not None
-    return refute_at_point(sample.counterexample, sample.difference)
-
-
-# -- numerals ---------------------------------------
-
-
-def decide_numeral(printed: sp.Expr, derived: sp.Expr, statement: Equation) -> Verdict:
-    """``|printed - derived| <= tolerance``, the meaning of a printed numeral."""
-    tolerance = sp.sympify(statement.tolerance, strict=True)
+    """Verdict of one entry; what the sides need to exist is said, also what subtraction cancels."""
     difference, box = printed - derived, statement.box
-
-    def is_beyond(ball: arb) -> bool:
-        with precision(BITS):  # abs rounds to the working precision, which hides an excess of 1e-30
-            return bool(abs(ball) > enclose(tolerance, bits=BITS))
-
-    sample = search_counterexample(difference, is_beyond, box, sides=finite_sides(printed, derived, statement))
-    if sample.counterexample is not None:
-        return refute_by_sample(sample)
-    if sample.points == 0:  # what exists nowhere is near to everything
-        return judge_sample(sample, scope_of(difference, box), f"within {tolerance}")
-    sides, scope, what = finite_sides(printed, derived, statement), scope_of(difference, box), f"within {tolerance}"
-    for side in (tolerance - difference, tolerance + difference):
-        look = look_at_places(side, lambda ball: bool(ball < 0), box, sides)
-        if look is not None and look.counterexample is not None:
-            return judge_look(look, sample, scope, what)
-    goals = (tolerance - difference, tolerance + difference)
-    judged = judge_look(look_again(difference, is_beyond, box, sides, goals=goals), sample, scope, what)
-    doubt = find_beats(difference, box) if judged.status == CONFIRMED else ""
-    judged = replace(judged, status=OPEN, evidence=doubt) if doubt else judged
-    return replace(judged, assumptions=assumptions_of(printed, derived, statement))
-
-
-def assumptions_of(printed: sp.Expr, derived: sp.Expr, statement: Equation) -> tuple[str, ...]:
-    """What the two sides need to exist; subtraction may have cancelled it."""
-    return remaining_assumptions((printed, derived), statement.box, statement.nonzero)
-
-
-# -- exact equality ---------------------------------------
-
-
-def prove_equal(printed: sp.Expr, derived: sp.Expr, statement: Equation, sample: Sample) -> Verdict:
-    if sample.points == 0:  # what exists nowhere is equal to everything
-        return judge_sample(sample, scope_of(printed - derived, statement.box), "equality")
-    difference = printed - derived
-    if vanishes_identically(difference):
-        method, evidence = "normal form", "printed - derived is zero by exact algebra"
-    elif not difference.free_symbols and is_zero(difference):
-        method, evidence = "exact number", "printed - derived is exactly zero"
-    else:
-        return decide_unproved(printed, derived, statement, sample)
-    return Verdict(
-        PROVED,
-        method=method,
-        scope=scope_of(sp.Tuple(printed, derived), statement.box),
-        assumptions=assumptions_of(printed, derived, statement),
-        evidence=evidence,
-    )
-
-
-def decide_unproved(printed: sp.Expr, derived: sp.Expr, statement: Equation, sample: Sample) -> Verdict:
-    """What no rung proves: broken by a second look, or sampled; OPEN when the normal form denies it."""
-    difference, scope = printed - derived, scope_of(printed - derived, statement.box)
-    sides = finite_sides(printed, derived, statement)
-    look = look_at_places(difference, excludes_zero, statement.box, sides)
-    if look is None:
-        look = look_again(difference, excludes_zero, statement.box, sides)
-    verdict = judge_look(look, sample, scope, "equality")
+    divisors = [sp.sympify(part, strict=True) for part in statement.nonzero]
+    sides = (printed, derived, *statement.exists, *(1 / part for part in divisors if part != 0))
+    tolerance = None if statement.tolerance is None else sp.sympify(statement.tolerance, strict=True)
+    try:
+        verdict = decide_difference(difference, "=", box, scope_of(difference, box), sides, tolerance)
+    except UnsupportedError as error:
+        return Verdict(OPEN, "none", scope_of(difference, box), evidence=str(error))
     if verdict.status == REFUTED:
         return verdict
-    if verdict.status == CONFIRMED and has_unique_form(difference):
-        evidence = f"{verdict.evidence}, and the normal form of printed - derived is not zero"
-        verdict = replace(verdict, status=OPEN, method="normal form", evidence=evidence)
-    return replace(verdict, assumptions=assumptions_of(printed, derived, statement))
+    scope = scope_of(sp.Tuple(printed, derived), box)
+    return replace(verdict, scope=scope, assumptions=remaining_assumptions((printed, derived), box, divisors))
+
+
+def decide_bound(statement: Bound) -> Verdict:
+    """Verdict of an inequality by what may break it; ``=`` is handed to the equations."""
+    if statement.relation == "=":
+        return decide_equation(Equation(statement.printed, statement.derived, statement.box, exists=statement.exists))
+    if statement.relation not in EXCLUDES:
+        raise DomainError(f"expected one of = != < <= > >=; got {statement.relation!r}; correct the relation")
+    difference = difference_of(statement)
+    scope = scope_of(difference, statement.box)
+    sides = [*list_entries(statement.printed), *list_entries(statement.derived)]
+    try:
+        existing = (*sides, *statement.exists)
+        verdict = decide_difference(difference, statement.relation, statement.box, scope, existing)
+        if verdict.status == REFUTED:
+            return verdict
+        return replace(verdict, assumptions=remaining_assumptions(sides, statement.box))
+    except UnsupportedError as error:
+        return Verdict(OPEN, "none", scope, evidence=str(error))
+
+
+def difference_of(statement: Bound) -> sp.Expr:
+    """Printed - derived; of matrices the sum of the squares, which vanishes only where they are equal."""
+    if shape_of(statement.printed) != shape_of(statement.derived):
+        raise DomainError("expected sides of one shape; got two shapes; correct one of them")
+    pairs = zip(list_entries(statement.printed), list_entries(statement.derived), strict=True)
+    differences = [printed - derived for printed, derived in pairs]
+    if not shape_of(statement.printed):
+        return differences[0]
+    if statement.relation != "!=":
+        raise DomainError(f"expected = or != between matrices; got {statement.relation}; compare them entry by entry")
+    return sp.Add(*(difference**2 for difference in differences))
+
+
+def decide_difference(
+    difference: sp.Expr,
+    relation: str,
+    box: Box,
+    scope: str,
+    sides: Sequence[sp.Expr] = (),
+    tolerance: sp.Expr | None = None,
+) -> Verdict:
+    """Verdict of ``difference relation 0``, or of ``|difference| <= tolerance``: broken by a point, CONFIRMED, or OPEN.
+
+    An equation is PROVED where exact algebra shows it.
+
+    sides : what has to have a value at a point of the statement
+    """
+    excludes, what = EXCLUDES[relation], "equality" if relation == "=" else f"printed {relation} derived"
+    margins = {"=": (), "!=": (difference**2, difference, -difference)}.get(relation)
+    margins = ((-difference if "<" in relation else difference),) if margins is None else margins
+    if tolerance is not None:
+        what, margins = f"within {tolerance}", (tolerance - difference, tolerance + difference)
+
+        def excludes(ball: arb) -> bool:
+            with precision(BITS):  # abs rounds to the working precision, which hides an excess of 1e-30
+                return bool(abs(ball) > enclose(tolerance, bits=BITS))
+
+    sample = search_counterexample(difference, excludes, box, sides=sides)
+    if sample.counterexample is not None and sample.difference is not None:
+        return refute_at_point(sample.counterexample, sample.difference)
+    if sample.points == 0:  # what exists nowhere has every relation to everything
+        return judge_sample(sample, scope, what)
+    is_equation = relation == "=" and tolerance is None
+    if is_equation and vanishes_identically(difference):
+        return Verdict(PROVED, "normal form", scope, evidence="printed - derived is zero by exact algebra")
+    if is_equation and not difference.free_symbols and is_zero(difference):
+        return Verdict(PROVED, "exact number", scope, evidence="printed - derived is exactly zero")
+    look = look_at_roots(difference, relation, box, sides, () if tolerance is None else margins)
+    if look is not None and look.touching is not None:  # false, without a point that could be written down
+        return Verdict(REFUTED, "real roots", "one point", evidence=doubt_of(look, relation), counterexample={})
+    if look is not None and look.counterexample is None and not is_equation:
+        words = "no sign between real roots contradicts it; no proof was found"
+        return Verdict(OPEN, "real roots", scope, evidence=words)
+    look = look or look_again(difference, excludes, box, sides, relation in STRICT, margins)
+    verdict = judge_look(look, sample, scope, what)
+    doubt = doubt_of(look, relation)
+    if not doubt and verdict.status == CONFIRMED:
+        doubt = find_beats(difference, box) if not is_equation else ""
+        if is_equation and has_unique_form(difference):
+            doubt = f"{verdict.evidence}, and the normal form of printed - derived is not zero"
+    return Verdict(OPEN, "sampling", scope, evidence=doubt) if doubt else verdict
+
+
+def look_at_roots(
+    difference: sp.Expr, relation: str, box: Box, sides: Sequence[sp.Expr], margins: Sequence[sp.Expr]
+) -> Look | None:
+    """A look at all signs of the difference, or of its margins, by real roots; None where these do not tell all."""
+    if not margins:
+        return look_at_places(difference, EXCLUDES[relation], box, sides, relation in STRICT)
+    looks = [look_at_places(margin, EXCLUDES[">="], box, sides) for margin in margins]
+    broken = (look for look in looks if look is not None and look.counterexample is not None)
+    return next(broken, None if None in looks else Look())
+
+
+def doubt_of(look: Look, relation: str) -> str:
+    """Why a relation without a counterexample must not be CONFIRMED; empty when nothing speaks against it."""
+    if look.counterexample is not None:
+        return ""
+    if relation == "!=" and look.positive and look.negative:
+        places = " and ".join(str(dict(point_text(point))) for point in (look.negative, look.positive))
+        return f"printed - derived changes its sign between {places}: a continuous difference has a zero there"
+    if look.touching is not None:
+        near = {symbol.name: f"{float(value):.12g}" for symbol, value in look.touching.items()}
+        return f"the sides come within 1e-60 of each other near {near}: equality there would break the relation"
+    return ""
 
 
 def find_beats(difference: sp.Expr, box: Box) -> str:

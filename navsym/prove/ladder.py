@@ -13,9 +13,8 @@ from navsym.claims.statement import UNDECIDED, Bound, Equation, Finding, Optimum
 from navsym.claims.verdict import OPEN, REFUTED, Verdict
 from navsym.core.errors import DomainError
 from navsym.core.sandbox import Exhausted, run_limited
-from navsym.prove.equations import decide_equation
+from navsym.prove.equations import decide_bound, decide_equation
 from navsym.prove.grant import grant_verdict
-from navsym.prove.inequalities import decide_bound
 from navsym.prove.optimum import decide_optimum
 from navsym.prove.search import SECONDS
 from navsym.prove.statements import require_statement

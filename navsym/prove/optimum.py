@@ -19,8 +19,7 @@ import sympy as sp
 from navsym.claims.statement import Box, Equation, Optimum
 from navsym.claims.verdict import CERTIFIED, OPEN, PROVED, Status, Verdict
 from navsym.prove.assumptions import is_nonnegative, remaining_assumptions
-from navsym.prove.equations import decide_equation, weakest_verdict
-from navsym.prove.inequalities import decide_difference
+from navsym.prove.equations import decide_difference, decide_equation, weakest_verdict
 from navsym.prove.products import as_product, as_squares
 from navsym.prove.signs import Sign, SignProof, prove_sign
 from navsym.prove.wording import scope_of

@@ -7,10 +7,11 @@ import time
 import pytest
 import sympy as sp
 
+from navsym.language.expression import to_text
 from navsym.prove import search
 from navsym.prove.rooms import signs
 from navsym.prove.rooms.goals import player
-from navsym.prove.signs import Sign, bounds, prove_sign
+from navsym.prove.signs import Sign, prove_sign
 
 T, SHARE = sp.symbols("T share", real=True)
 BOX = {T: (sp.Integer(1), 1 + sp.pi / 4), SHARE: (0, 1)}
@@ -44,7 +45,7 @@ def test_a_search_in_vain_ends_by_its_counts_when_the_clock_stands_still(monkeyp
     played = []
     plays = search.Search.plays
     monkeypatch.setattr(search.Search, "plays", lambda self, *given: played.append(given) or plays(self, *given))
-    term = player.parse(bounds.to_text(SIDES["balls"]))
+    term = player.parse(to_text(SIDES["balls"]))
     box = {"T": ["1", "1 + pi/4", []], "share": ["0", "1", []]}
     goal = player.Goal(term, ">=", {name: player.read_range(limits) for name, limits in box.items()})
     assert search.find_proof(goal, 1.0, search.SIGN_ROUNDS, balls=False) is None

@@ -15,8 +15,7 @@ from flint import arb
 
 from navsym.claims import Bound, Box, Equation, Optimum
 from navsym.core.balls import UnsupportedError
-from navsym.prove.equations import list_entries
-from navsym.prove.inequalities import EXCLUDES
+from navsym.prove.equations import EXCLUDES, list_entries
 from navsym.prove.sampling.points import Point, draw_points
 from tests.attacks.campaigns.edited_values import Values, values_at
 from tests.attacks.campaigns.edits import Edit, apply_edit, list_edits, rearrange, widen
