@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import re
+from collections.abc import Iterator
 from dataclasses import dataclass, field
 from typing import Any
 
@@ -78,8 +79,6 @@ class Reader(SourceReader):
 
     locals : the names that the function being read declares
     pointers, arrays : those of them that are pointers or arrays, and arrays
-    scopes : name of a function -> the namespaces and classes in which the file defines it
-    opened : classes and namespaces whose names are taken elsewhere, too
     spaces : the namespaces of the file
     directives : the names of macros
     nodes      : of the tree
@@ -96,8 +95,6 @@ class Reader(SourceReader):
     directives: set[str] = field(default_factory=set)
     nodes: list[Any] = field(default_factory=list)
     hidden: dict[int, str] = field(default_factory=dict)
-    scopes: dict[str, set[tuple[str, ...]]] = field(default_factory=dict)
-    opened: set[str] = field(default_factory=set)
     spaces: set[str] = field(default_factory=set)
 
     def parse(self, source: bytes) -> Any:
@@ -145,11 +142,11 @@ class Reader(SourceReader):
         for node in self.nodes if self.unit.language == "cpp" else ():
             if node.type == "function_definition" and (head := head_of_function(node)) is not None:
                 name = text_of(field_of(head, "declarator")).split("::")[-1]
-                self.scopes.setdefault(name, set()).add(scope_of(node))
+                self.places.setdefault(name, set()).add(scope_of(node))
             elif is_constant(node):
                 for child in node.children_by_field_name("declarator"):
                     name = text_of(field_of(child, "declarator") or child)
-                    self.scopes.setdefault(name, set()).add(scope_of(node))
+                    self.places.setdefault(name, set()).add(scope_of(node))
             elif node.type in ("base_class_clause", "using_declaration"):
                 self.opened |= {*re.findall(r"\w+", text_of(node))}
         self.spaces = {text_of(field_of(n, "name")) for n in self.nodes if n.type == "namespace_definition"}
@@ -476,7 +473,7 @@ class Reader(SourceReader):
     def read_expression(self, node: Any) -> Part | None:
         match node.type:
             case "identifier" if (name := text_of(node)) not in self.locals and not self.is_seen(node, name):
-                return self.refuse(node, f"{name}, which this file defines in another place")
+                return self.elsewhere(node, name)
             case "number_literal" if node.start_byte in self.hidden:
                 return self.part("name", node, self.hidden[node.start_byte])
             case "qualified_identifier" if text_of(node).startswith("::"):
@@ -530,6 +527,8 @@ class Reader(SourceReader):
     def number(self, node: Any) -> Part:
         """A number without its suffix; the grammar takes the sign of some numbers for a part of them."""
         text = text_of(node)
+        if text.isdigit() and (text == "0" or text[0] != "0"):
+            return self.literal(node, text, False)
         bare = text.removeprefix("-")
         if re.fullmatch(r"0\d+", bare):
             return self.refuse(node, "an octal number")
@@ -589,12 +588,13 @@ class Reader(SourceReader):
         """A call; a function that the file defines in a namespace or class is known there only."""
         if self.is_seen(node, name):
             return self.part("call", node, name, arguments)
-        return self.refuse(node, f"the function {name}, which this file defines in another place")
+        return self.elsewhere(node, f"the function {name}")
 
-    def is_seen(self, node: Any, name: str) -> bool:
-        """True at a node inside a namespace or class that defines a name, or where all of the file sees it."""
-        around, known = scope_of(node), self.scopes.get(name, set())
-        return self.shift < 0 or not known or any(s == around[: len(s)] or s[-1] in self.opened for s in known)
+    @staticmethod
+    def places_open_to(node: Any, is_member: bool) -> Iterator[tuple[str, ...]]:
+        """A namespace or class sees what is defined around it."""
+        around = scope_of(node)
+        return (around[:k] for k in range(len(around) + 1))
 
     def block_of(self, node: Any, base: Part, method: str, arguments: tuple[Part, ...]) -> Part | None:
         """``M.block<p, q>(i, j)``, ``M.block(i, j, p, q)``, ``M.row(i)`` and the like as slices; None for others."""

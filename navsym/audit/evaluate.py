@@ -6,7 +6,6 @@ import itertools
 import re
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
-from fractions import Fraction
 from typing import Any, ClassVar
 
 from navsym.audit.cases import Condition, Order, Reading
@@ -204,6 +203,9 @@ class Evaluator:
 
     def whole(self, part: Part) -> int:
         """A constant whole number."""
+        if part.kind == "number" and part.parts[1] == "int" and not (self.edits or self.unit.decimals):
+            self.steps += 1
+            return int(part.parts[0])
         value = self.value(part)
         forbid(self.unit.language == "python" and is_truth(value), "a truth where a whole number is needed", part.line)
         if (exact := constant_of(value)) is None or exact.denominator != 1:
@@ -212,31 +214,28 @@ class Evaluator:
 
     def targets(self, part: Part) -> tuple[Variable, list[Index], Index]:
         """Variable, places and shape of an entry or a block."""
-        if part.kind == "name":
-            if (member := self.member_of_array(part)) is not None:
-                return self.targets(self.component(member))
-            variable = self.variable(part.parts[0])
-            shape = variable.shape or ()
-            return variable, [*places_of(shape)], shape
         if part.kind == "first":
             variable = self.variable(part.parts[0].parts[0])
             is_array = bool(variable.shape) or (variable.shape is None and any(variable.cells))
             return variable, [(0,) * max(len(variable.shape or ()), 1) if is_array else ()], ()
-        if part.kind == "method" and self.unit.language == "cpp" and part.parts[1] in self.unit.functions:
-            raise Unreadable(f"the method {part.parts[1]} of another object")
-        if part.kind == "method" and part.parts[0].kind == "name" and part.parts[2] and self.unit.language == "cpp":
-            part = Part("call", part.line, (f"{part.parts[0].parts[0]}.{part.parts[1]}", part.parts[2]), part.span)
-        if part.kind == "method" and part.parts[0].kind == "name" and self.variable_shape(part.parts[0].parts[0]):
-            part = self.component(part) if not part.parts[2] else part  # v.x()
-        if part.kind not in ("index", "call") and not (part.kind == "method" and part.parts[1] == "block"):
-            raise Unreadable("a target that is no entry")
+        if part.kind == "method" and self.unit.language == "cpp":
+            base, method, arguments = part.parts
+            forbid(method in self.unit.functions, f"the method {method} of another object")
+            if base.kind == "name" and arguments:
+                part = Part("call", part.line, (f"{base.parts[0]}.{method}", arguments), part.span)
+        part = self.entry_of(part)
+        if part.kind == "name":
+            variable = self.variable(part.parts[0])
+            shape = variable.shape or ()
+            return variable, [*places_of(shape)], shape
+        why = f"the method {part.parts[1]}" if part.kind == "method" else "a target that is no entry"
+        forbid(part.kind not in ("index", "call"), why)
         indices: list[Part] = []
         while part.kind == "index":
             forbid(indices and any(index.kind == "slice" for index in part.parts[1]), "an index of a block")
             indices = [*part.parts[1], *indices]
             part = part.parts[0]
-        if self.member_of_array(part) is not None:
-            raise Unreadable("an entry of a member of an array")
+        forbid(self.entry_of(part) is not part, "an entry of a member of an array")
         if part.kind == "call":
             is_own = part.parts[0] in self.unit.functions and part.parts[0] not in self.frame
             forbid(is_own, f"the call of {part.parts[0]} where a variable is needed")
@@ -313,10 +312,11 @@ class Evaluator:
         self.steps += 1
         kind = part.kind
         try:
-            if kind == "number" and (known := self.unit.decimals.get(abs(part.parts[0]))) is not None:
-                return Scalar(known if part.parts[0] > 0 else minus(known))
             if kind == "number":
-                return Scalar(build_number(Fraction(part.parts[0])), part.parts[1])
+                number, numeral = part.parts
+                if self.unit.decimals and (known := self.unit.decimals.get(abs(number))) is not None:
+                    return Scalar(known if number > 0 else minus(known))
+                return Scalar(build_number(number), numeral)
             if kind == "name":
                 return self.named_value(part)
             if kind == "op":
@@ -357,8 +357,8 @@ class Evaluator:
         forbid(name not in self.frame and not self.unit.knows(name, part), f"{name}, {UNDECIDED}")
         if name not in self.frame and name in self.unit.macros:
             return self.macro(name)
-        if (member := self.member_of_array(part)) is not None:
-            return self.entries(self.component(member))
+        if (entry := self.entry_of(part)) is not part:
+            return self.entries(entry)
         if name not in self.frame and name not in self.file_names and name in CONSTANTS:
             return Scalar(CONSTANTS[name])
         if "()" in name or name in NAMED_CALLS.get(self.unit.language, ()):
@@ -586,8 +586,8 @@ class Evaluator:
 
     def bind(self, argument: Argument, given: Part, function: Function) -> Variable:
         """A parameter of an inlined function: the caller's own variable, or a copy of a value."""
-        inner, changed = given.parts[0] if given.kind == "address" else given, changed_in(self.unit, function).changed
-        inner = self.entry_of(inner)
+        inner = self.entry_of(given.parts[0] if given.kind == "address" else given)
+        changed = changed_in(self.unit, function).changed
         is_number = argument.shared and argument.number != "other" and argument.name not in changed
         is_copied = is_number and given.kind != "address" and self.is_copied(argument.name, inner)
         if is_copied:
@@ -653,7 +653,8 @@ class Evaluator:
         if (is_known_method := is_method(name, len(arguments), self.unit.language)) and is_array:
             return KNOWN[name, 1 + len(arguments)](self.unit, self.value(base), *map(self.value, arguments))
         if base.kind == "name" and self.variable_shape(base.parts[0]):
-            return self.entries(self.component(part))
+            forbid(arguments, f"the method {name}")
+            return self.entries(self.component(part, base.parts[0], name))
         if is_known_method:  # never an accessor: without its size nobody knows what it gives
             raise Unreadable(f"{name} of what has no known size; declare it under [code.symbols]")
         forbid(name in self.unit.functions, f"the method {name} of another object")
@@ -661,33 +662,25 @@ class Evaluator:
             return self.call(Part("call", part.line, (f"{base.parts[0]}.{name}", arguments), part.span), True)
         raise Unreadable(f"the method {name}")
 
-    def member_of_array(self, part: Part) -> Part | None:
-        """``v.x`` of a vector as the method of that name; None for a name that is no member of an array."""
-        base, dot, field = part.parts[0].rpartition(".") if part.kind == "name" else ("", "", "")
-        if not dot or part.parts[0] in self.shapes or not self.variable_shape(base):
-            return None
-        return Part("method", part.line, (Part("name", part.line, (base,), part.span), field, ()), part.span)
-
     def entry_of(self, part: Part) -> Part:
         """``v.x`` and ``v.x()`` of a vector as an entry, which may have another name; else the part itself."""
-        member = self.member_of_array(part) or part
-        is_one = member is not part or (member.kind == "method" and not member.parts[2] and member.parts[1] in LETTERS)
-        if is_one and member.parts[0].kind == "name" and self.variable_shape(member.parts[0].parts[0]):
-            return self.component(member)
-        return part
+        if part.kind == "name" and part.parts[0] not in self.shapes:
+            base, dot, field = part.parts[0].rpartition(".")
+            return self.component(part, base, field) if dot and self.variable_shape(base) else part
+        is_short = part.kind == "method" and not part.parts[2] and part.parts[1] in LETTERS
+        base = part.parts[0].parts[0] if is_short and part.parts[0].kind == "name" else ""
+        is_own = is_short and self.unit.language == "cpp" and part.parts[1] in self.unit.functions
+        return self.component(part, base, part.parts[1]) if base and not is_own and self.variable_shape(base) else part
 
-    def component(self, part: Part) -> Part:
-        """``v.x()`` of a vector of two or three as an entry."""
-        base, name, arguments = part.parts
-        shape = self.variable_shape(base.parts[0]) or ()
-        is_short = shape in ((2,), (3,))
-        of_quaternion = "xyzw" if self.unit.language == "cpp" else "ijkw"
-        is_quaternion = self.variable(base.parts[0]).number == "quaternion"
-        letters = of_quaternion if is_quaternion else "xyz"[: shape[0] * is_short]
-        if not arguments and len(name) == 1 and name in letters:
-            place = Part("number", part.line, (letters.index(name), "int"))
-            return Part("index", part.line, (base, (place,)), part.span)
-        raise Unreadable(f"the method {name}")
+    def component(self, part: Part, name: str, letter: str) -> Part:
+        """The entry of a vector of two or three, or of a quaternion, that has a letter."""
+        shape = self.variable_shape(name) or ()
+        letters = "xyz"[: shape[0]] if shape in ((2,), (3,)) else ""
+        if self.variable(name).number == "quaternion":
+            letters = "xyzw" if self.unit.language == "cpp" else "ijkw"
+        forbid(len(letter) != 1 or letter not in letters, f"the method {letter}")
+        place = Part("number", part.line, (letters.index(letter), "int"))
+        return Part("index", part.line, (Part("name", part.line, (name,), part.span), (place,)), part.span)
 
     def variable_shape(self, name: str) -> Index | None:
         """The shape of a name that is known already."""

@@ -373,7 +373,7 @@ class Machine(Evaluator):
             forbid(isinstance(before, List), f"{sign}= of a list, which is no array")
             result = combine(self.unit, sign, before, result)
         self.note_unread(result, statement)
-        target = self.component(member) if (member := self.member_of_array(target)) else target
+        target = self.entry_of(target)
         if target.kind == "name":
             variable = self.variable(target.parts[0])
             if isinstance(result, Array) and variable.shape in (None, ()) and not variable.is_input:

@@ -48,7 +48,6 @@ class Reader(SourceReader):
     made    : names that the file binds, imports aside
     changed : names outside of functions that hold more than their one value
     given   : names whose arrays get another name, or go to what may write to them
-    free, methods : the functions of the file, outside of classes and in them
     computed : members that a class of the file computes when they are read or set; ANY where it may be every one
     """
 
@@ -57,8 +56,6 @@ class Reader(SourceReader):
     rebound: set[str] = field(default_factory=set)
     changed: set[str] = field(default_factory=set)
     given: set[str] = field(default_factory=set)
-    free: set[str] = field(default_factory=set)
-    methods: set[str] = field(default_factory=set)
     times: Counter[str] = field(default_factory=Counter)
     star: int = -1
     made: set[str] = field(default_factory=set)
@@ -106,11 +103,12 @@ class Reader(SourceReader):
                 self.changed |= {n for n, t in zip(names, targets, strict=True) if t.type != "identifier"}
             above = list_above(node) if names else []
             is_local, is_import = "function_definition" in above, node.type.startswith("import")
+            scope = next((kind for kind in above if kind in ("function_definition", "class_definition")), "")
             if node.type == "function_definition":
-                (self.methods if "class_definition" in above else self.free).add(names[0])
+                inner = "class_definition" in above and scope != "class_definition"  # of a method, seen there only
+                self.places.setdefault(names[0], set()).update([("",)] if inner else self.places_open_to(node, True))
             elif node.type == "class_definition":
                 self.read_members(node)
-            scope = next((kind for kind in above if kind in ("function_definition", "class_definition")), "")
             if not scope or (scope == "function_definition" and node.type not in FOLLOWED):
                 self.times.update(names)  # what a function binds otherwise may stand for anything there
             is_other = not is_numeric(node) or (is_local and node.type == "import_from_statement")
@@ -315,9 +313,10 @@ class Reader(SourceReader):
                 return self.refuse(node, "an argument by keyword")
             arguments.append(self.expression(child))
         name = "".join(text_of(function).split())
-        if function.type == "identifier" and name in self.rebound - self.free:
+        is_own = () in self.places.get(name, ())
+        if function.type == "identifier" and name in self.rebound and not is_own:
             return self.refuse(node, f"{name}, which this file uses for something else")
-        if function.type == "identifier" and name == "float" and name not in self.free and len(arguments) == 1:
+        if function.type == "identifier" and name == "float" and not is_own and len(arguments) == 1:
             return self.part("cast", node, "real", arguments[0])
         if function.type == "attribute":
             base = text_of(field_of(function, "object"))
@@ -331,18 +330,22 @@ class Reader(SourceReader):
             if base == "self":
                 return self.part("call", node, method, tuple(arguments))
             return self.part("method", node, self.expression(field_of(function, "object")), method, tuple(arguments))
-        if function.type == "identifier" and name in self.methods - self.free:
-            return self.refuse(node, f"the function {name}, which this file defines in a class only")
+        if function.type == "identifier" and not self.is_seen(node, name):
+            return self.elsewhere(node, f"the function {name}")
         if function.type == "identifier":
-            meaning = name if name in self.free else self.unit.imported.get(name, name)
+            meaning = name if is_own else self.unit.imported.get(name, name)
             return self.part("call", node, meaning, tuple(arguments))
         return self.refuse(node, "a call of an expression")
 
-    def has_method(self, node: Any, method: str) -> bool:
-        """True where the class around a call defines a method, or there is no class around it."""
+    def has_method(self, node: Any, name: str) -> bool:
+        """True where the class around a node defines a method, or there is no class around it."""
+        return self.is_seen(node, name, True) and (self.shift < 0 or name in self.places)
+
+    @staticmethod
+    def places_open_to(node: Any, is_member: bool) -> list[tuple[str, ...]]:
+        """The module, or the class around a node."""
         owner = next((above for above in ascend(node) if above.type == "class_definition"), None)
-        names = {text_of(field_of(field_of(n, "definition") or n, "name")) for n in named(field_of(owner, "body"))}
-        return method in names or (owner is None and (self.shift < 0 or method in self.free | self.methods))
+        return [(str(owner.start_byte),)] if is_member and owner is not None else [()]
 
 
 def list_targets(node: Any) -> list[Any]:

@@ -29,7 +29,7 @@ QUIET = frozenset("println eprintln debug_assert debug_assert_eq assert assert_e
 
 #: A text, and what may write in the arguments of a macro.
 STRING, WRITING = re.compile(r'"(\\.|[^"\\])*"'), re.compile(r"(?<![=!<>])=(?!=)|mut\b")
-ELSEWHERE, INSIDE = "which this file defines in another place", ("self", "Self", "crate", "super")
+INSIDE, OWNER = ("self", "Self", "crate", "super"), "type "
 OPEN = "which each type of a trait may define otherwise"
 DEFINING = ("struct_item", "enum_item", "union_item", "type_item", "macro_definition")
 SIGNS = ("", "+=", "-=", "*=", "/=", "%=")
@@ -57,8 +57,6 @@ def type_of(text: str) -> tuple[str, tuple[int, ...] | None]:
 class Reader(SourceReader):
     """Walks the syntax tree of Rust.
 
-    own, methods : the functions of the file, and those of a type
-    places       : each with the modules around it and its type
     pointers     : references that the function being read declares
     foreign      : names that ``use`` brings from elsewhere, or under another name, and numbers of templates
     defined      : the types and macros of the file
@@ -68,9 +66,6 @@ class Reader(SourceReader):
     REALS = OPEN_TYPES
     OPEN = ("if_expression", "for_expression", "block", "expression_statement")
 
-    own: set[str] = field(default_factory=set)
-    methods: set[str] = field(default_factory=set)
-    places: set[tuple[str, tuple[str, ...], str]] = field(default_factory=set)
     pointers: set[str] = field(default_factory=set)
     foreign: set[str] = field(default_factory=set)
     defined: set[str] = field(default_factory=set)
@@ -82,19 +77,14 @@ class Reader(SourceReader):
     def read_file(self, root: Any) -> None:
         """Functions, constants and fields, also inside modules and implementations."""
         nodes = [*descend(root)]
-        pairs = [(text_of(field_of(n, "name")), list_above(n)) for n in nodes if n.type == "function_item"]
-        self.own = {name for name, _ in pairs}
-        self.methods = {name for name, above in pairs if {"impl_item", "trait_item"} & {*above}}
-        for node in (node for node in nodes if node.type == "function_item"):
-            modules, owners = place_of(node)
-            self.places.add((text_of(field_of(node, "name")), modules, owners[0] if owners else ""))
         constants = [node for node in nodes if node.type == "const_item" and not is_open(node)]
         for node in constants:
             self.unit.variables.add(name := text_of(field_of(node, "name")))
             if (region := self.region_of(node)) is not None:
                 self.unit.regions.setdefault(name, []).append(region)
+        for node in (*constants, *(node for node in nodes if node.type == "function_item")):
             modules, owners = place_of(node)
-            self.places.add((name, modules, owners[0] if owners else ""))
+            self.places.setdefault(text_of(field_of(node, "name")), set()).add((*modules, *owners[:1]))
         for node in nodes:
             if node.type in DEFINING and text_of(field_of(node, "type")) not in ("f32", "f64"):
                 self.defined.add(text_of(field_of(node, "name")))
@@ -104,6 +94,8 @@ class Reader(SourceReader):
             is_known = re.match(r"use\s+(std|core)::f(32|64)::consts\b", text_of(node)) is not None
             renamed = {text_of(field_of(n, "alias")) for n in descend(node) if n.type == "use_as_clause"}
             self.foreign |= renamed | {*(identifiers_in(node) if not is_known else ())}
+        methods = {n for n, places in self.places.items() if any(p and p[-1].startswith(OWNER) for p in places)}
+        self.foreign -= methods
         for node in nodes:
             if node.type == "function_item":
                 self.read_function(node)
@@ -276,12 +268,11 @@ class Reader(SourceReader):
                 is_real = node.type == "float_literal" or text.endswith(("f32", "f64"))
                 return self.literal(node, bare.removesuffix("."), is_real)
             case "identifier" if (name := text_of(node)) in {*self.unit.variables, "PI"}:
-                is_hidden = name in self.foreign or not self.is_here(node, name, False)
-                return self.refuse(node, f"{name}, {ELSEWHERE}") if is_hidden else None
+                return self.elsewhere(node, name) if name in self.foreign or not self.is_seen(node, name) else None
             case "scoped_identifier":
                 name, last = "".join(text_of(node).split()), text_of(field_of(node, "name"))
                 head = name.split("::")[-2]
-                words = {w for own, at, owner in self.places if own == last for w in (*at, owner)} | {*INSIDE}
+                words = {word.removeprefix(OWNER) for place in self.places.get(last, ()) for word in place} | {*INSIDE}
                 if last in self.unit.variables and head in words:
                     return self.part("name", node, last)
                 return self.part(
@@ -332,8 +323,8 @@ class Reader(SourceReader):
             return self.method(node, function, arguments)
         name = re.sub(r"::<[^:]*>(?=::|$)|<[^:]*>(?=::|$)|\s", "", text_of(function))
         head, _, last = name.rpartition("::")
-        if head in ("", "Self") and (last in self.foreign - self.methods or not self.is_here(node, last, bool(head))):
-            return self.refuse(node, f"the function {last}, {ELSEWHERE}")
+        if head in ("", "Self") and (last in self.foreign or not self.is_seen(node, last, bool(head))):
+            return self.elsewhere(node, f"the function {last}")
         if head == "Self" and is_open(node):
             return self.refuse(node, f"{name}, {OPEN}")
         if not head or head == "Self":
@@ -357,21 +348,20 @@ class Reader(SourceReader):
             return self.part("call", node, NUMBERS[last] or last, arguments)
         return self.part("call", node, name, arguments)
 
-    def is_here(self, node: Any, name: str, is_method: bool) -> bool:
-        """True where a call means a function of the file: of the type around it, or of the module around it."""
+    @staticmethod
+    def places_open_to(node: Any, is_member: bool) -> list[tuple[str, ...]]:
+        """The module around it, or the type and the trait around it."""
         modules, owners = place_of(node)
-        known = {(place, owner) for own, place, owner in self.places if own == name}
-        fits = any(owner in owners for _, owner in known) if is_method else (modules, "") in known
-        return not known or fits or self.shift < 0
+        return [(*modules, owner) for owner in owners] if is_member else [modules]
 
     def method(self, node: Any, function: Any, arguments: tuple[Part, ...]) -> Part:
         base, name = self.expression(field_of(function, "value")), text_of(field_of(function, "field"))
         is_own = base.kind == "name" and base.parts[0] == "self"
-        if is_own and not self.is_here(node, name, True):
-            return self.refuse(node, f"the method {name}, which this file defines in another place")
+        if is_own and not self.is_seen(node, name, True):
+            return self.elsewhere(node, f"the method {name}")
         if is_own:
             return self.refuse(node, f"{name}, {OPEN}") if is_open(node) else self.part("call", node, name, arguments)
-        if name in self.own or name in self.unit.functions:
+        if name in self.places or name in self.unit.functions:
             return self.refuse(node, f"the method {name} of this file on another value")
         if name in SAME and not arguments:
             return base
@@ -400,7 +390,7 @@ def place_of(node: Any) -> tuple[tuple[str, ...], list[str]]:
     modules = tuple(text_of(field_of(above, "name")) for above in ascend(node) if above.type == "mod_item")
     types = (above for above in ascend(node) if above.type in ("impl_item", "trait_item"))
     nodes = (field_of(above, key) for above in types for key in ("type", "trait", "name"))
-    return modules, [re.split(r"[<\s]", text_of(n))[0] for n in nodes if n is not None]
+    return modules, [OWNER + re.split(r"[<\s]", text_of(n))[0] for n in nodes if n is not None]
 
 
 LOOPS = ("for_expression", "while_expression", "loop_expression", "match_expression", "block", "unsafe_block")

@@ -310,7 +310,8 @@ def declare_functions(unit: Unit, table: Table, where: str) -> None:
         if meaning.kind == "refused":
             raise ExpressionSyntaxError(f"expected an expression; got {quote(entry['is'])}; correct it", where=place)
         body = (Part("return", 0, (meaning,)),)
-        unit.functions[name] = [Function(name, 0, tuple(Argument(n, "real") for n in names), body)]
+        arguments = tuple(Argument(n, "real") for n in names)
+        unit.functions[name] = [Function(name, 0, arguments, body, number="other")]  # a value, computed at once
 
 
 def read_symbols(table: Table, names: Names, where: str) -> tuple[dict[str, Index], frozenset[str]]:

@@ -6,7 +6,7 @@ import functools
 import importlib
 import re
 from collections.abc import Iterable, Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import Any, ClassVar
 
@@ -128,6 +128,7 @@ def find_odd(node: Any) -> str:
     return ""
 
 
+@functools.lru_cache(1 << 12)
 def read_decimal(text: str) -> Fraction | None:
     """The exact value of decimal digits, with a point and an exponent of at most three digits; None for others."""
     return Fraction(text) if len(text) <= 60 and DECIMAL.fullmatch(text) else None
@@ -213,7 +214,11 @@ INNER = frozenset(
 class SourceReader:
     """Walks the syntax tree of one language; ``shift`` moves the spans of a text that was read alone.
 
+    places : name that the file defines -> what is around each of its definitions, the outermost first
+    opened : namespaces and classes whose names are known elsewhere, too
+
     A language has ``read_file``, ``read_statement``, ``read_expression``, which give None for what is outside of it,
+    ``places_open_to``, the places whose names a bare name may mean at a node, or a member of the own object,
     ``effect``, what an expression writes that stands alone, and ``find_value``, the expression in the tree of HEAD, a
     text and TAIL. A node with an error in it is refused as a whole, unless it is a statement of a kind in OPEN, whose
     own statements are looked at.
@@ -230,9 +235,12 @@ class SourceReader:
     read_expression: ClassVar[Any]
     find_value: ClassVar[Any]
     effect: ClassVar[Any]
+    places_open_to: ClassVar[Any]
 
     unit: Unit
     shift: int = 0
+    places: dict[str, set[tuple[str, ...]]] = field(default_factory=dict)
+    opened: set[str] = field(default_factory=set)
 
     @classmethod
     def read_text(cls, text: str, unit: Unit) -> Part:
@@ -317,6 +325,17 @@ class SourceReader:
             case "unary_expression" | "unary_operator" | "not_operator":
                 return self.operate_alone(node, sign_of(node), named(node)[-1])
         return None
+
+    def is_seen(self, node: Any, name: str, is_member: bool = False) -> bool:
+        """True where a name means at a node what the file defines under it, or the file defines nothing under it."""
+        if self.shift < 0 or not (known := self.places.get(name)):
+            return True  # of an expression that is read alone nobody knows where it stands
+        near = {*self.places_open_to(node, is_member)}
+        return any(place in near or self.opened & {*place[-1:]} for place in known)
+
+    def elsewhere(self, node: Any, what: str) -> Part:
+        """A name of the file that is not known at a node."""
+        return self.refuse(node, f"{what}, which this file defines in another place")
 
     def region_of(self, node: Any) -> tuple[int, int] | None:
         """The bytes in which a name is known that is defined at a node; None where it is everywhere."""

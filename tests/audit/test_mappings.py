@@ -102,6 +102,13 @@ def test_a_vector_has_no_members_of_its_own(tmp_path, body, right, status):
     assert ask(tmp_path, "out", right, code=code)[0] == status
 
 
+def test_a_function_that_the_mapping_declares_gives_a_vector_that_is_computed_at_once(tmp_path):
+    code = "void step(const Vector2f &v, Vector2f &out)\n{\n    Vector2f w = turn(v);\n    out = w;\n}\n"
+    mapping = '[code.functions]\nturn = { of = ["a"], is = "{-a(1), a(0)}" }'
+    assert ask(tmp_path, "out(0)", "-v(1)", mapping, code)[0] == "PROVED"
+    assert ask(tmp_path, "out(1)", "-v(0)", mapping, code)[0] == "REFUTED"
+
+
 @pytest.mark.parametrize(
     ("mapping", "match"),
     [
