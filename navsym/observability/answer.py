@@ -37,7 +37,7 @@ from navsym.observability.document import as_html, as_latex, document_of_observa
 from navsym.observability.inputs import observe_driven
 from navsym.observability.null_space import NullSpace, follow_directions, read_points
 from navsym.observability.pieces import observe_pieces
-from navsym.observability.rank_drops import RankDrop, find_drops
+from navsym.observability.rank_drops import DropList, RankDrop, find_drops
 from navsym.observability.sensors import Restoration, restore_observability
 from navsym.observability.splits import FeasibleSplit, Split, best_split, choose_split, feasible_splits
 from navsym.observability.two_stage import POLE, Stage, StageGains, gains_by_poles, list_stages, stage_gains
@@ -333,16 +333,18 @@ def observe(
 
 
 def observe_in_parts(contents: ModelFile) -> Observability:
-    """A model with unknown inputs or in pieces: without chains, and so without drops."""
+    """A model in pieces, or with unknown inputs: these without chains, and so without drops."""
     pieces: tuple[Mapping[str, Any], ...] = ()
     if contents.inputs:
         model, joint = observe_driven(contents)
         kind = "discrete" if contents.Phi is not None else kind_of(model)
+        drops = DropList((), {"joint": False}, {})
     else:
-        model, joint, pieces = observe_pieces(contents)
+        model, joint, pieces, drops = observe_pieces(contents)
         kind = "pieces"
     more: dict[str, Any] = {"kind": kind, "pieces": pieces, "inputs": tuple(contents.inputs), "contents": contents}
-    return Observability(contents.name, model, joint, (), {"joint": False}, **more)
+    more["rank_drops_open"] = drops.open
+    return Observability(contents.name, model, joint, drops.drops, drops.complete, **more)
 
 
 def need_one_matrix(contents: ModelFile) -> None:

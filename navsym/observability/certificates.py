@@ -119,10 +119,10 @@ class Certifier:
         found = joint.chains.directions
         return NO_DIRECTIONS if found is None else self.certify(joint.joint_dimension, found, [], range(len(self.rows)))
 
-    def certify_drop(self, drop: RankDrop) -> dict[str, Any] | str:
-        """A drop that lasts, with the rank that is left on it."""
-        names = self.model.measurements
-        places = range(len(names)) if drop.subspace == "joint" else [names.index(drop.subspace)]
+    def certify_drop(self, drop: RankDrop, owners: Sequence[str] = ()) -> dict[str, Any] | str:
+        """A drop that lasts, with the rank that is left on it; owners : the measurement of each row, if not its own."""
+        names = owners or self.model.measurements
+        places = [k for k, name in enumerate(names) if drop.subspace in ("joint", name)]
         found = [self.certify(leaf.rank, leaf.unseen, leaf.system, places, leaf.nonzero) for leaf in drop.leaves]
         reasons = [item for item in found if isinstance(item, str)]
         if reasons or not found:

@@ -11,7 +11,7 @@ a coupling of 1e-15 is not zero. The dimensions are generic: where they drop is 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 
 import sympy as sp
 
@@ -21,6 +21,7 @@ from navsym.models.linear import LinearModel
 from navsym.observability.directions import find_unobservable
 from navsym.observability.linear import (
     Matrix,
+    at_point,
     independent_places,
     linear_relation,
     null_vectors,
@@ -66,6 +67,7 @@ class Chain:
     clock     : common denominator of G, the same for all chains; both are 1 where they move
     companion : theta_1 ... theta_m; None where the relation is too long to write
     dimension : m, what the measurement observes
+    stacked   : all rows that the legs of a motion show, of a model in pieces; none of another
     """
 
     name: str
@@ -74,6 +76,12 @@ class Chain:
     clock: Poly
     companion: tuple[Quotient, ...] | None
     dimension: int
+    stacked: Matrix = field(default_factory=list)
+
+    @property
+    def starts(self) -> Matrix:
+        """The rows from which all others follow along the motion."""
+        return self.stacked or self.vectors[:1]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -84,9 +92,12 @@ class Chains:
                  basis of the jointly observable functionals
     directions : columns that no measurement shows, without denominators; None where none could be exhibited, so that
                  the rank is proved from below only
+    model      : F and the rows of H;  owners : the measurement of each row
     """
 
     states: tuple[str, ...]
+    model: LinearModel
+    owners: tuple[str, ...]
     motion: Motion
     chains: tuple[Chain, ...]
     staircase: tuple[int, ...]
@@ -136,18 +147,32 @@ class Chains:
         return total
 
 
-def chains_of(model: LinearModel) -> Chains:
+def chains_of(model: LinearModel, owners: tuple[str, ...] = ()) -> Chains:
     """Chains of all measurements of a model, with proofs of their dimensions.
+
+    owners : of a state at rest, of which a measurement has several rows, the measurement of each row
 
     Raises DomainError (time-varying model, zero row h, entries that are no rational functions),
     EmptyError (no measurement), TooLargeError. Measurements with equal rows are redundant, not wrong.
     """
     motion, rows = moving_rows(model)
-    chains = tuple(
-        chain_of(name, row, bottom, motion) for name, (row, bottom) in zip(model.measurements, rows, strict=True)
-    )
+    if owners:
+        groups = {name: [row for (row, _), owner in zip(rows, owners, strict=True) if owner == name] for name in owners}
+        chains = tuple(stacked_chain(name, group, motion) for name, group in groups.items())
+    else:
+        chains = tuple(chain_of(name, *row, motion) for name, row in zip(model.measurements, rows, strict=True))
     staircase, directions = joint_staircase(chains, motion)
-    return Chains(model.states, motion, chains, staircase, directions)
+    return Chains(model.states, model, owners or model.measurements, motion, chains, staircase, directions)
+
+
+def stacked_chain(name: str, rows: Matrix, motion: Motion) -> Chain:
+    """What the rows of one measurement show of a state at rest."""
+    one = motion.ring.constant(1)
+    vectors = [rows[k] for k in independent_places(at_point(rows, motion.points(1)[0]))]
+    unseen = null_vectors(vectors, motion.size, motion.ring)
+    if any(scalar_product(row, column, 0 * one) != 0 for row in rows for column in unseen):
+        raise ArithmeticError("stacked rows: the point was unlucky")
+    return Chain(name, vectors, one, one, None, len(vectors), rows)
 
 
 def moving_rows(model: LinearModel) -> tuple[Motion, list[tuple[list[Poly], Poly]]]:
@@ -224,8 +249,8 @@ def joint_staircase(chains: tuple[Chain, ...], motion: Motion) -> tuple[tuple[in
 
     The counts at a point are a proved lower bound of the rank; unobservable directions prove the upper one.
     """
-    starts = [chain.vectors[0] for chain in chains]
-    tries = {point: staircase_at(starts, motion, point) for point in motion.points()}
+    starts = [row for chain in chains for row in chain.starts]
+    tries = {point: staircase_at(chains, motion, point) for point in motion.points()}
     point = max(tries, key=lambda key: sum(tries[key]))
     counts, n = tries[point], motion.size
     if sum(counts) == n:
@@ -234,11 +259,12 @@ def joint_staircase(chains: tuple[Chain, ...], motion: Motion) -> tuple[tuple[in
     return counts, directions
 
 
-def staircase_at(starts: Matrix, motion: Motion, point: Sequence[int]) -> tuple[int, ...]:
+def staircase_at(chains: tuple[Chain, ...], motion: Motion, point: Sequence[int]) -> tuple[int, ...]:
     """The counts at a point, modulo the prime."""
-    n = motion.size
-    chosen = independent_places(residue_chains(starts, motion, point))
-    return tuple(sum(1 for place in chosen if place // n == k) for k in range(len(starts)))
+    listed = [(k, row) for k, chain in enumerate(chains) for row in chain.starts]
+    chosen = independent_places(residue_chains([row for _, row in listed], motion, point))
+    taken = [listed[place // motion.size][0] for place in chosen]
+    return tuple(map(taken.count, range(len(chains))))
 
 
 @dataclass(frozen=True, slots=True)
@@ -311,9 +337,9 @@ class JointObservability:
 
     @property
     def chains(self) -> Chains:
-        """The chains of a model in one piece. Raises DomainError for several pieces."""
+        """The chains of a model without unknown inputs. Raises DomainError beside these."""
         if self.written is None:
-            raise DomainError("expected a model in one piece; got several; ask for one of them")
+            raise DomainError("expected a model without unknown inputs; got inputs; leave them out")
         return self.written
 
     @property
@@ -327,12 +353,12 @@ class JointObservability:
         return self.joint_dimension == len(self.states)
 
 
-def observe_jointly(model: LinearModel) -> JointObservability:
+def observe_jointly(model: LinearModel, owners: tuple[str, ...] = ()) -> JointObservability:
     """Chains, dimensions, companion coefficients and unobservable directions of a model.
 
-    Raises the same errors as :func:`chains_of`.
+    Arguments and errors are those of :func:`chains_of`.
     """
-    chains = chains_of(model)
+    chains = chains_of(model, owners)
     ring, n = chains.ring, chains.size
     directions = chains.directions or []
     entries = [ring.expression(x) for vector in directions for x in vector]

@@ -63,12 +63,11 @@ def list_proofs(answer: Observability) -> Proofs:
     """What the checker grants of the rank, whose key is None, and of every drop, or why it grants nothing."""
     if answer.contents is not None and answer.inputs:
         return {None: certify_inputs(answer.contents, answer.joint) or "no feedback or no derivatives were found"}
-    if answer.joint.written is None:
-        return {None: "a model in pieces" if answer.pieces else "long rows"}
-    certifier, end = Certifier.of(answer.model), time.process_time() + SECONDS
+    chains = answer.joint.chains
+    certifier, end = Certifier.of(chains.model), time.process_time() + SECONDS
     found: dict[RankDrop | None, Mapping[str, Any] | str] = {None: certifier.certify_rank(answer.joint)}
     for drop in list_nested(answer.rank_drops):
-        found[drop] = certifier.certify_drop(drop) if time.process_time() < end else NO_TIME
+        found[drop] = certifier.certify_drop(drop, chains.owners) if time.process_time() < end else NO_TIME
     return found
 
 
@@ -87,7 +86,7 @@ def instant_data(answer: Observability, proofs: Proofs) -> dict[str, Any] | None
 
     Over an interval the rank is lost where the parameters are such that a drop lasts; at an instant also in passing.
     """
-    if answer.joint.written is None or answer.kind in ("constant", "discrete"):
+    if answer.joint.written is None or answer.kind in ("constant", "discrete", "pieces"):
         return None
     passing = [drop_data(drop, proofs) for drop in answer.rank_drops if not drop.lasting]
     return {"rank": answer.rank, "rank_drops": passing, "frozen_rank": answer.frozen_rank}

@@ -8,7 +8,7 @@ Molinari 1976). A nonlinear model is linearised along its motion, whose inputs a
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cache
 from itertools import pairwise
@@ -23,7 +23,13 @@ from navsym.models.along import gradient, model_along_motion
 from navsym.models.linear import LinearModel
 from navsym.models.modelfile import ModelFile
 from navsym.observability.certificates import Certifier, diagonal_columns
-from navsym.observability.chains import JointObservability, need_chains, numerators, observe_jointly
+from navsym.observability.chains import (
+    JointObservability,
+    MeasurementObservability,
+    need_chains,
+    numerators,
+    observe_jointly,
+)
 from navsym.observability.linear import (
     Matrix,
     at_point,
@@ -34,7 +40,7 @@ from navsym.observability.linear import (
     scalar_product,
 )
 from navsym.observability.motion import Motion, motion_of
-from navsym.observability.pieces import observe_by_subsets
+from navsym.observability.pieces import annihilator
 from navsym.observability.ring import Poly
 
 
@@ -172,6 +178,30 @@ def observe_driven(contents: ModelFile) -> tuple[LinearModel, JointObservability
     columns = [numerators([unseen[k, :]], ring)[0][0] for k in range(unseen.rows)]
     proved = find_friend(driven, driven.rows, columns, point) is not None
     return model, observe_by_subsets(model.states, model.measurements, unseen_by, proved)
+
+
+def observe_by_subsets(
+    states: tuple[str, ...],
+    names: tuple[str, ...],
+    unseen_by: Callable[[tuple[int, ...]], sp.ImmutableMatrix],
+    proved: bool = True,
+) -> JointObservability:
+    """The answer for a model without chains, from the directions that the measurements in some places do not show."""
+    n, single = len(states), [unseen_by((j,)) for j in range(len(names))]
+    unseen = [unseen_by(tuple(range(j + 1))) for j in range(len(names))]
+    return JointObservability(
+        states,
+        measurements=tuple(
+            MeasurementObservability(name, annihilator(rows, n), (), n - rows.rows)
+            for name, rows in zip(names, single, strict=True)
+        ),
+        staircase=tuple(before - after for before, after in pairwise([n, *(rows.rows for rows in unseen)])),
+        unobservable=unseen[-1],
+        assumptions=(),
+        written=None,
+        observed=annihilator(unseen[-1], n),
+        proved=proved,
+    )
 
 
 # Certificates

@@ -1,18 +1,16 @@
-"""Observability of a model in pieces: what is unobservable in one piece is carried into the next.
+"""Observability of a model in pieces: the rows of all legs, stacked at the start of the last one.
 
-With the state at the end of a piece as the unknown, W is what no measurement has shown so far. In the next piece it
-shrinks to its intersection with the unobservable directions N of that piece at its start, and the motion carries it on:
-W <- Phi (W and N). Where W and N is invariant under the motion, it is itself again and no Phi is needed: always after
-the first piece, so that two constant pieces have the rank of their stacked rows whatever their lengths are. The rest
-takes the exact transition matrix of a constant piece.
+With the state at the end of a leg as the unknown, S are the functionals that a measurement has shown so far. The next
+leg adds what it shows at its start, and its motion carries all on: S <- S Phi^-1. Where the span of S is invariant
+under the motion, it is itself again and no Phi is needed: always after the first leg, so that two constant legs have
+the rank of their stacked rows whatever their lengths are. The rest takes the exact transition matrix of a constant leg.
+Rank, unobservable directions, drops and certificates are those of a state at rest that is measured by these rows.
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
-from functools import cache
-from itertools import pairwise
 from typing import Any
 
 import sympy as sp
@@ -22,7 +20,7 @@ from navsym.language.expression import to_text
 from navsym.models.along import model_along_motion
 from navsym.models.linear import LinearModel
 from navsym.models.modelfile import ModelFile
-from navsym.observability.chains import JointObservability, MeasurementObservability, observe_jointly
+from navsym.observability.chains import JointObservability, observe_jointly
 from navsym.observability.linear import (
     Matrix,
     at_point,
@@ -33,13 +31,14 @@ from navsym.observability.linear import (
     scalar_product,
 )
 from navsym.observability.motion import motion_of
+from navsym.observability.rank_drops import DropList, find_drops
 
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Stage:
-    """One piece for some of the measurements.
+    """One leg for one measurement.
 
-    model       : F and H of the piece
+    model       : F and H of the leg
     start, end  : its ends
     found       : its observability by itself
     """
@@ -49,74 +48,57 @@ class Stage:
     end: sp.Expr
     found: JointObservability
 
-    def unobservable_at(self, moment: sp.Expr) -> sp.ImmutableMatrix:
-        """Rows of the directions that the piece does not show, at a time; DomainError where they degenerate there."""
+    def shown_at(self, moment: sp.Expr) -> sp.ImmutableMatrix:
+        """Rows that the leg shows at a time; DomainError where they degenerate there."""
+        basis = self.found.measurements[0].basis
+        if self.model.constant and basis.rows == self.found.joint_dimension:
+            return basis
         rows = self.found.unobservable.subs(self.model.time, moment)
         if rows.has(sp.nan, sp.zoo) or len(independent_rows(rows)) < rows.rows:
             got = f"directions that degenerate at t = {to_text(moment)}"
             raise DomainError(f"expected pieces that begin at a regular time; got {got}; move it", where="piece")
-        return rows
+        return annihilator(rows, self.model.size)
 
 
-def observe_pieces(contents: ModelFile) -> tuple[LinearModel, JointObservability, tuple[Mapping[str, Any], ...]]:
-    """The first piece, the joint observability over all pieces, and from, to and rank of each piece by itself.
+def observe_pieces(
+    contents: ModelFile,
+) -> tuple[LinearModel, JointObservability, tuple[Mapping[str, Any], ...], DropList]:
+    """The first leg, the observability over all legs, from, to and rank of each leg by itself, and the drops.
 
-    Directions and bases hold at the start of the last piece.
+    Directions and bases hold at the start of the last leg. Drops are listed for two constant legs, whose rows span what
+    is shown for all parameters.
 
     Raises the errors of :func:`observe_jointly`, and DomainError for moving parameters, and for varying or too
     complicated inner pieces that would have to carry a direction on.
     """
-    models = [model_along_motion(contents, piece) for piece in contents.pieces]
-
-    @cache
-    def stages_of(places: tuple[int, ...]) -> list[Stage]:
-        return [stage_of(contents, k, measured(model, places)) for k, model in enumerate(models)]
-
-    names = models[0].measurements
-    every = stages_of(tuple(range(len(names))))
-    joint = observe_by_subsets(contents.states, names, lambda places: unobservable_over(stages_of(places)))
-    assumptions = tuple(dict.fromkeys(a for stage in every for a in stage.found.assumptions))
-    return models[0], replace(joint, assumptions=assumptions), tuple(piece_data(stage) for stage in every)
-
-
-def observe_by_subsets(
-    states: tuple[str, ...],
-    names: tuple[str, ...],
-    unseen_by: Callable[[tuple[int, ...]], sp.ImmutableMatrix],
-    proved: bool = True,
-) -> JointObservability:
-    """The answer for a model without chains, from the directions that the measurements in some places do not show."""
-    n, single = len(states), [unseen_by((j,)) for j in range(len(names))]
-    unseen = [unseen_by(tuple(range(j + 1))) for j in range(len(names))]
-    return JointObservability(
-        states,
-        measurements=tuple(
-            MeasurementObservability(name, annihilator(rows, n), (), n - rows.rows)
-            for name, rows in zip(names, single, strict=True)
-        ),
-        staircase=tuple(before - after for before, after in pairwise([n, *(rows.rows for rows in unseen)])),
-        unobservable=unseen[-1],
-        assumptions=(),
-        written=None,
-        observed=annihilator(unseen[-1], n),
-        proved=proved,
-    )
-
-
-def measured(model: LinearModel, places: Sequence[int]) -> LinearModel:
-    """The model with some of its measurements."""
-    H = sp.ImmutableMatrix([model.H[j, :] for j in places])
-    return LinearModel(model.F, None, H, model.states, tuple(model.measurements[j] for j in places), model.time)
-
-
-def stage_of(contents: ModelFile, place: int, model: LinearModel) -> Stage:
-    """One piece with its ends and its observability by itself."""
     if contents.rates:
         message = f"expected parameters that are constant; got the rate of {next(iter(contents.rates))} beside pieces"
         raise DomainError(f"{message}; write F as F(t)", where="rates")
-    piece = contents.pieces[place]
-    end = piece.end if piece.end is not None else piece.start
-    return Stage(model, piece.start, end, observe_jointly(model))
+    models = [model_along_motion(contents, piece) for piece in contents.pieces]
+    ends = [(piece.start, piece.end if piece.end is not None else piece.start) for piece in contents.pieces]
+    every = [Stage(model, *span, observe_jointly(model)) for model, span in zip(models, ends, strict=True)]
+    stacks = []
+    for j in range(len(models[0].measurements)):
+        single = [measured(model, j) for model in models]
+        stacks.append(rows_over([Stage(m, *span, observe_jointly(m)) for m, span in zip(single, ends, strict=True)]))
+    owners = tuple(name for name, rows in zip(models[0].measurements, stacks, strict=True) for _ in range(rows.rows))
+    still = sp.Dummy("still", real=True)
+    H = sp.ImmutableMatrix.vstack(*stacks)
+    polynomial_rows(H)
+    rest = LinearModel(sp.zeros(H.cols), None, H, contents.states, time=still)
+    joint = observe_jointly(rest, owners)
+    assumptions = tuple(dict.fromkeys(a for stage in every for a in stage.found.assumptions))
+    joint = replace(joint, assumptions=assumptions)
+    exact = len(models) == 2 and all(model.constant for model in models)
+    drops = find_drops(joint, contents.box) if exact else DropList((), {"joint": False}, {})
+    return models[0], joint, tuple(map(piece_data, every)), drops
+
+
+def measured(model: LinearModel, place: int) -> LinearModel:
+    """The model with one of its measurements."""
+    return LinearModel(
+        model.F, None, model.H[place, :], model.states, model.measurements[place : place + 1], model.time
+    )
 
 
 def piece_data(stage: Stage) -> Mapping[str, Any]:
@@ -130,33 +112,33 @@ def piece_data(stage: Stage) -> Mapping[str, Any]:
     }
 
 
-def unobservable_over(stages: Sequence[Stage]) -> sp.ImmutableMatrix:
-    """Rows of the directions that no piece shows, at the start of the last piece."""
-    unseen = stages[0].unobservable_at(stages[0].end)
-    for before, stage in pairwise(stages):
-        if before is not stages[0]:
-            unseen = carried(unseen, before)
-        unseen = intersection(unseen, stage.unobservable_at(stage.start))
-    return unseen
+def rows_over(stages: Sequence[Stage]) -> sp.ImmutableMatrix:
+    """Rows of what all legs show, at the start of the last one."""
+    shown = stages[0].shown_at(stages[0].end)
+    for stage in stages[1:-1]:
+        shown = carried(shown, stage)
+    return sp.ImmutableMatrix.vstack(shown, stages[-1].shown_at(stages[-1].start))
 
 
 def carried(rows: sp.ImmutableMatrix, stage: Stage) -> sp.ImmutableMatrix:
-    """Directions at the end of a piece, from those at its start that the piece does not show."""
-    if rows.rows == stage.found.unobservable.rows:
-        return stage.unobservable_at(stage.end)
+    """What is known at the end of a leg, from what is known at its start and what the leg shows."""
+    own = stage.shown_at(stage.start)
+    fresh = rows_beside(own, rows)
+    if not fresh.rows:
+        return stage.shown_at(stage.end)
     if not stage.model.constant:
         got = f"F(t) from {to_text(stage.start)} to {to_text(stage.end)}"
         raise DomainError(f"expected a constant F in an inner piece; got {got}; split it finer", where="piece")
-    moved = (stage.model.F * rows.T).T
-    if all(is_spanned(rows, sp.ImmutableMatrix(moved.row(k))) for k in range(moved.rows)):
-        return rows
+    whole = sp.ImmutableMatrix.vstack(own, fresh)
+    if not rows_beside(whole, fresh * stage.model.F).rows:
+        return whole
     from navsym.models.transition.exponential import transition_matrix
 
-    Phi = transition_matrix(stage.model.F, stage.end - stage.start)
+    Phi = transition_matrix(stage.model.F, stage.start - stage.end)
     if Phi.matrix.has(sp.RootSum):
         got = "eigenvalues that are roots of a polynomial of high degree"
         raise DomainError(f"expected a transition matrix in closed form; got {got}; set some parameters", where="piece")
-    return sp.ImmutableMatrix((Phi.matrix * rows.T).T)
+    return sp.ImmutableMatrix.vstack(own, fresh * Phi.matrix)
 
 
 # Exact linear algebra on rows of functions
@@ -188,12 +170,6 @@ def independent_rows(rows: sp.ImmutableMatrix) -> list[int]:
     return independent_places(at_point(listed, integer_points(motion.ring)[0]))
 
 
-def intersection(left: sp.ImmutableMatrix, right: sp.ImmutableMatrix) -> sp.ImmutableMatrix:
-    """What lies in the spans of the rows of both."""
-    n = left.cols
-    return annihilator(sp.ImmutableMatrix.vstack(annihilator(left, n), annihilator(right, n)), n)
-
-
 def annihilator(rows: sp.ImmutableMatrix, n: int) -> sp.ImmutableMatrix:
     """Independent functionals that vanish on all rows."""
     if not rows.rows:
@@ -208,7 +184,15 @@ def annihilator(rows: sp.ImmutableMatrix, n: int) -> sp.ImmutableMatrix:
 
 def is_spanned(rows: sp.ImmutableMatrix, other: sp.ImmutableMatrix) -> bool:
     """True when a row lies in the span of independent rows."""
-    if all(x == 0 for x in other):
-        return True
-    (basis, (target,)), motion = polynomial_rows(rows, other)
-    return all(x == 0 for x in target) or linear_relation(basis, target, motion.ring) is not None
+    return not rows_beside(rows, other).rows
+
+
+def rows_beside(rows: sp.ImmutableMatrix, others: sp.ImmutableMatrix) -> sp.ImmutableMatrix:
+    """Those of the others, one after the other, that do not lie in the span of independent rows and of those before."""
+    (basis, targets), motion = polynomial_rows(rows, others)
+    fresh = []
+    for k, target in enumerate(targets):
+        if any(x != 0 for x in target) and linear_relation(basis, target, motion.ring) is None:
+            basis.append(target)
+            fresh.append(k)
+    return others.extract(fresh, list(range(others.cols)))

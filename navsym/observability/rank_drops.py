@@ -1,9 +1,8 @@
 """All parameter values at which an observable subspace shrinks.
 
 A chain of generic dimension m spans at every parameter point what its first m vectors span there, so that the
-drops are the points where these vectors, of one measurement or of all together, have a smaller rank. What is
-regular everywhere is taken out first (``observability_reduction``); the rest is decided by cases on pivots
-(``observability_cases``), factored, split into components, over the real numbers.
+drops are the points where these vectors, of one measurement or of all together, have a smaller rank. One tree of cases
+decides where, over the real numbers: on the vectors themselves for an instant, and along the motion for an interval.
 """
 
 from __future__ import annotations
@@ -12,7 +11,7 @@ import itertools
 import math
 from collections.abc import Iterable, Iterator, Sequence
 from contextlib import suppress
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Any
 
 import sympy as sp
@@ -20,13 +19,29 @@ from flint import fmpz, fmpz_mat
 
 from navsym.claims.statement import Box
 from navsym.core.errors import TooLargeError
-from navsym.observability.cases import drops_by_cases
 from navsym.observability.chains import Chain, Chains, JointObservability
 from navsym.observability.linear import Matrix
 from navsym.observability.motion import Motion
-from navsym.observability.reduction import System, components, irredundant, is_nowhere, krylov_remainder, lies_in_ideal
+from navsym.observability.reduction import (
+    System,
+    components,
+    irredundant,
+    is_nowhere,
+    lies_in_ideal,
+    reduce_generators,
+    written_rows,
+)
 from navsym.observability.ring import Hashed, Poly, Ring, irreducible_factors, is_divisor, is_odd
-from navsym.observability.tree import SPLIT_TERMS, Leaf, is_covered, leaf_on, lost_columns, named_values, search_drops
+from navsym.observability.tree import (
+    SPLIT_TERMS,
+    Cases,
+    Leaf,
+    is_covered,
+    leaf_on,
+    lost_columns,
+    named_values,
+    search_drops,
+)
 from navsym.prove.assumptions import is_nonzero
 
 # Determinants of chains by values at integer points.
@@ -144,6 +159,8 @@ def newton(bound: int) -> fmpz_mat:
     return fmpz_mat(bound + 1, bound + 1, [c for row in zip(*columns, strict=True) for c in row])
 
 
+#: Cases of rows that do not move.
+WRITTEN = 60
 #: So many staircases at most, when the joint locus is written down by its definition, and terms of all of them.
 MOST_STAIRCASES, LAST_TERMS = 40, 40_000
 #: Drops inside drops inside drops are looked for so deep; more directions have too many terms to be read.
@@ -216,7 +233,7 @@ def find_drops(found: JointObservability, box: Box | None = None) -> DropList:
     for name, (part, locus) in all_loci(chains).items():
         complete[name] = locus.complete
         left[name] = tuple(filter(None, (join_conditions(conditions_on(system, ring)) for system in locus.open)))
-        rows = [chain.vectors[0] for chain in part]
+        rows = [row for chain in part for row in chain.starts]
         generic = leaf_on([], rows, ring, chains.motion) if locus.lasting else None
         view = View(name, rows, generic, chains.motion, locus.complete, box or {})
         drops += view.list_drops(locus.lasting, NESTED if name == "joint" else 0, locus.leaves)
@@ -402,31 +419,36 @@ def all_loci(chains: Chains) -> dict[str, tuple[tuple[Chain, ...], Locus]]:
 
 
 def locus_of(chains: Chains, part: tuple[Chain, ...], rank: int) -> Locus:
-    """Where some chains span less together: by cases on written rows, by the tree, or by the definition."""
+    """Where some chains span less together: by the tree on written rows or along the motion, or by the definition."""
     ring, motion = chains.ring, chains.motion
     if motion.roots:
         return Locus([], complete=False)
-    systems, whole = written_drops(part, rank, motion)
+    written = written_drops(part, rank, motion)
+    systems = irredundant(closed_systems(written.drops))
+    whole = not written.open and not any(leaf.nonzero for leaf in written.drops)
     if whole and not motion.rates:
-        return Locus(irredundant(systems))
-    listed = None if motion.rates else drops_by_staircases(chains, part, rank)
+        return Locus(systems, [], written.drops)
+    chained = not motion.rates and not any(chain.stacked for chain in part)
+    listed = drops_by_staircases(chains, part, rank) if chained else None
     if listed is not None:
         return Locus(irredundant(listed))
-    found = search_drops([chain.vectors[0] for chain in part], rank, ring, motion)
-    lasting, left, leaves = closed_systems(found.drops), found.open, found.drops
-    if motion.rates:
-        passing = [system for system in systems if not is_covered([*system, *named_values(system, ring)], lasting)]
-        return Locus(lasting, passing, leaves, left, whole and not left)
-    return Locus(irredundant([*lasting, *systems]), [], leaves, left, not left)
+    found = search_drops([row for chain in part for row in chain.starts], rank, ring, motion)
+    lasting, left = closed_systems(found.drops), found.open
+    if not motion.rates:
+        return Locus(irredundant([*lasting, *systems]), [], found.drops, left, not left)
+    passing = [system for system in systems if not is_covered([*system, *named_values(system, ring)], lasting)]
+    return Locus(lasting, passing, found.drops, left, whole and not left)
 
 
-def written_drops(part: tuple[Chain, ...], rank: int, motion: Motion) -> tuple[list[System], bool]:
-    """Where the first vectors of the chains, as many as their dimensions, span less, and whether these are all."""
+def written_drops(part: tuple[Chain, ...], rank: int, motion: Motion) -> Cases:
+    """Where the first vectors of the chains, as many as their dimensions, span less; in reduced equations."""
     try:
-        rest = krylov_remainder([(chain.vectors[0], chain.dimension) for chain in part], motion)
+        rows = written_rows([(row, chain.dimension) for chain in part for row in chain.starts], motion)
     except TooLargeError:
-        return [], False
-    return drops_by_cases(rest.rows, rank - rest.regular, motion.ring)
+        return Cases([], [[]])
+    found = search_drops(rows, rank, motion.ring, nodes=WRITTEN)
+    tidy = [(leaf, reduce_generators(leaf.system, motion.ring)) for leaf in found.drops]
+    return replace(found, drops=[replace(leaf, system=system) for leaf, system in tidy if system is not None])
 
 
 def drops_by_staircases(chains: Chains, part: tuple[Chain, ...], rank: int) -> list[System] | None:

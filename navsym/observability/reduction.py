@@ -11,7 +11,6 @@ import functools
 import itertools
 import random
 from collections.abc import Sequence
-from dataclasses import dataclass
 from math import gcd, prod
 from typing import Any
 
@@ -176,9 +175,14 @@ def is_definite(f: Poly) -> bool:
         return False
     if any(f(*point) * at_zero <= 0 for point in small_points(size)):
         return False
-    names = [sp.Symbol(f"x{k}", real=True) for k in range(size)]
-    positive = polynomial_sum(names, f, 1 if at_zero > 0 else -1)
-    return prove_sign(positive, {}, Sign.POSITIVE).sign == Sign.POSITIVE
+    return is_positive(Hashed(f if at_zero > 0 else -f))
+
+
+@functools.lru_cache(4096)
+def is_positive(value: Hashed) -> bool:
+    """True for a polynomial that is proved to be positive at all real points; a search meets the same ones often."""
+    names = [sp.Symbol(f"x{k}", real=True) for k in range(value.poly.context().nvars())]
+    return prove_sign(polynomial_sum(names, value.poly), {}, Sign.POSITIVE).sign == Sign.POSITIVE
 
 
 @functools.cache
@@ -226,14 +230,6 @@ def lies_in_ideal(value: Poly, system: System) -> bool:
     generators: Any = fmpz_mpoly_vec(system, value.context())
     reduced: Any = value
     return bool(reduced.reduction_primitive_part(generators) == 0)
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class Remainder:
-    """rank of the whole = regular + rank(rows) for every value of the parameters."""
-
-    regular: int
-    rows: Matrix
 
 
 class UnitBasis:
@@ -295,49 +291,13 @@ def divide_row(row: list[Poly], unit: Poly) -> list[Poly]:
     return parts
 
 
-def take_out_regular(rows: Sequence[list[Poly]], ring: Ring) -> Remainder:
-    """Take out everything regular from some rows."""
-    basis = UnitBasis(ring)
-    waiting, passed = list(rows), True
-    while passed:
-        passed = False
-        rest = []
-        for row in sorted(waiting, key=row_weight):
-            row = basis.reduced(row)
-            if basis.take(row):
-                passed = True
-            elif any(entry != 0 for entry in row):
-                rest.append(row)
-        waiting = rest
-    return without_columns(basis, waiting)
-
-
-def without_columns(basis: UnitBasis, rows: Sequence[list[Poly]]) -> Remainder:
-    """Rows reduced by the basis, on the columns that it leaves free; no zeros, no repetitions."""
-    width = len(rows[0]) if rows else 0
-    free = [k for k in range(width) if k not in basis.columns]
-    kept: dict[str, list[Poly]] = {}
-    for row in rows:
-        short = [basis.reduced(row)[k] for k in free]
-        if any(entry != 0 for entry in short):
-            kept.setdefault(str(short), short)
-    return Remainder(len(basis.rows), list(kept.values()))
-
-
 def row_weight(row: list[Poly]) -> int:
     """Number of terms to multiply."""
     return sum(len(entry) for entry in row)
 
 
-def krylov_remainder(starts: Sequence[tuple[list[Poly], int]], motion: Motion) -> Remainder:
-    """Regular part and remainder of the chains h, G^T h, ...: (h, number of vectors) for each of them."""
-    basis, rest = krylov_basis(starts, motion)
-    inner = take_out_regular(without_columns(basis, rest).rows, motion.ring)
-    return Remainder(len(basis.rows) + inner.regular, inner.rows)
-
-
-def krylov_basis(starts: Sequence[tuple[list[Poly], int]], motion: Motion) -> tuple[UnitBasis, Matrix]:
-    """Regular rows of the chains and all others, which span together what the chains span at every point.
+def written_rows(starts: Sequence[tuple[list[Poly], int]], motion: Motion) -> Matrix:
+    """Short rows that span at every point what the chains (h, number of vectors) span there.
 
     Every vector is reduced before it is multiplied on: modulo the basis, which is multiplied on as well,
     nothing is lost, and degrees stay low.
@@ -360,4 +320,4 @@ def krylov_basis(starts: Sequence[tuple[list[Poly], int]], motion: Motion) -> tu
             if count > 1:
                 following.append((motion.advance(row), count - 1))
         step = following
-    return basis, rest
+    return [*basis.rows, *map(basis.reduced, rest)]

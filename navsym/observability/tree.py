@@ -17,6 +17,7 @@ from __future__ import annotations
 
 import heapq
 from collections.abc import Callable, Sequence
+from contextlib import suppress
 from dataclasses import dataclass, field, replace
 from typing import Any
 
@@ -28,6 +29,7 @@ from navsym.core.rational_functions import powers_apart
 from navsym.observability.cases import (
     SOLUTION,
     is_irreducible,
+    minors_on,
     replace_in_row,
     solved_variables,
     substitute_row,
@@ -147,13 +149,11 @@ def need_short(row: list[Poly]) -> list[Poly]:
 class Cases:
     """The answer of a search.
 
-    full   : the first leaf of the wanted rank, None where there is none
     drops  : leaves of smaller ranks, without those inside others; their closures are all points of smaller rank
              except for those of the open systems
     open   : systems that were not decided
     """
 
-    full: Leaf | None
     drops: list[Leaf]
     open: list[System]
 
@@ -168,7 +168,6 @@ class Tree:
     motion: Motion | None = None
     most: int = NODES
     heap: list[tuple[int, int, Node]] = field(default_factory=list)
-    full: Leaf | None = None
     drops: list[Leaf] = field(default_factory=list)
     open: list[System] = field(default_factory=list)
     count: int = 0
@@ -197,7 +196,7 @@ class Tree:
         drops = [next(leaf for leaf in self.drops if leaf.system == system) for system in listed]
         drops += [leaf for leaf in self.drops if leaf.nonzero and not is_covered(leaf.system, listed)]
         left = [system for system in irredundant(self.open) if not is_covered(system, listed)]
-        return Cases(self.full, drops, left)
+        return Cases(drops, left)
 
     def visit(self, node: Node) -> None:
         """Make a node a leaf, or split it."""
@@ -207,7 +206,6 @@ class Tree:
             return
         rank = len(node.basis.rows)
         if rank >= self.wanted:
-            self.full = self.full or Leaf(node.system, rank, node.unseen(self.width))
             return
         system, unseen = node.system, node.unseen(self.width)
         dense = is_irreducible(system, node.ring) and has_dense_points(system, node.ring)
@@ -218,12 +216,27 @@ class Tree:
         self.drops += [Leaf(part, rank, unseen, nonzero, dense) for part in closed]
 
     def split(self, node: Node, entries: Sequence[Poly]) -> None:
-        """p != 0, and the factors of p one by one, for the entry p that is simplest without its units."""
+        """p != 0, and the factors of p one by one, for the entry p that is simplest without its units.
+
+        Of rows that do not move the points where some minors vanish are enough: elsewhere the rank is the wanted one.
+        """
+        minors = self.list_minors(node) if self.motion is None else []
+        if minors:
+            whole = any(map(node.ring.is_unit, minors))
+            for part in [] if whole else components([*node.system, *minors], node.ring):
+                self.push_parts(node, part)
+            return
         factors = node.split_on(entries)
         for factor in factors:
             self.push_parts(node, [*node.system, factor])
         node.assume_nonzero(factors)
         self.push(node)
+
+    def list_minors(self, node: Node) -> list[Poly]:
+        """Minors of what is left of the rows on a node; none where the rank is smaller, or where they get long."""
+        with suppress(TooLargeError):
+            return minors_on(node.waiting, self.wanted - len(node.basis.rows), node.system, node.ring)
+        return []
 
     def push_parts(self, node: Node, system: System) -> None:
         """Put the points of a node on which a larger system holds in the line, solved as far as possible."""
@@ -232,7 +245,7 @@ class Tree:
             if not waiting:
                 return
             part, ring = waiting.pop()
-            tidy = tidy_system(part, ring)
+            tidy = tidy_system(part, ring, self.motion is not None)
             if tidy is None:
                 continue
             try:
@@ -249,10 +262,13 @@ class Tree:
         self.open.append(system)
 
 
-def tidy_system(system: System, ring: Ring) -> System | None:
-    """The equations without units and repetitions; None where no real point satisfies them."""
+def tidy_system(system: System, ring: Ring, named: bool) -> System | None:
+    """The equations without units and repetitions; None where no real point satisfies them.
+
+    named : with what functions become there
+    """
     plain = [ring.without_units(f.primitive()[1]) for f in system if f != 0]
-    listed = [item.poly for item in dict.fromkeys(map(Hashed, [*plain, *named_values(plain, ring)]))]
+    listed = [item.poly for item in dict.fromkeys(map(Hashed, [*plain, *(named_values(plain, ring) if named else [])]))]
     none = any(f.is_constant() for f in listed) or is_nowhere(listed, ring) or any(map(is_definite, listed))
     return None if none else listed
 

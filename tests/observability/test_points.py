@@ -15,7 +15,7 @@ import pytest
 import sympy as sp
 
 import navsym as nav
-from tests.observability.flows import DIGITS, number, rank_in_time, rank_of_flow, rank_of_steps
+from tests.observability.flows import DIGITS, number, rank_in_time, rank_of_flow, rank_of_pieces, rank_of_steps
 
 PARAMETERS = ("a", "b", "c")
 TIMES = [Fraction(k, 16) for k in range(1, 8)]
@@ -141,11 +141,30 @@ def nonlinear_model(source):
     return model, (*states, "a", "b"), rank
 
 
+def model_in_legs(source):
+    """The same for two constant legs."""
+    n = source.choice((2, 3))
+    pool = ["0", "0", "1", "-1", "a", "b", "a*b", "a - b", "b + 1"]
+    legs = [[[source.choice(pool) for _ in range(n)] for _ in range(n)] for _ in range(2)]
+    H = [[str(int(j == 0)) if i == 0 else source.choice(["0", "1", "a"]) for j in range(n)] for i in range(1)]
+    ends = [Fraction(1, 3), Fraction(7, 8)]
+    pieces = [(0, ends[0], legs[0]), (ends[0], ends[1], legs[1])]
+    model = nav.Model([f"x{k}" for k in range(n)], pieces=pieces, H=H, a="real", b="real")
+    read = [[[sp.sympify(x) for x in row] for row in rows] for rows in (*legs, H)]
+
+    def rank(at):
+        *flown, seen = ([[value_of(x, at) for x in row] for row in rows] for rows in read)
+        return rank_of_pieces(flown, ends, seen)
+
+    return model, ("a", "b"), rank
+
+
 KINDS = {
     "constant": lambda source: linear_model(source, moving=False, steps=False),
     "steps": lambda source: linear_model(source, moving=False, steps=True),
     "in time": lambda source: linear_model(source, moving=True, steps=False),
     "nonlinear": nonlinear_model,
+    "legs": model_in_legs,
 }
 
 
@@ -190,7 +209,7 @@ def test_the_rank_is_smaller_on_the_listed_sets_and_nowhere_else(kind):
 
 
 #: Models and points of each: 300 models, more than 10,000 points.
-MANY = {"constant": (120, 47), "steps": (80, 47), "in time": (60, 16), "nonlinear": (40, 16)}
+MANY = {"constant": (120, 47), "steps": (80, 47), "in time": (60, 16), "nonlinear": (40, 16), "legs": (40, 16)}
 
 
 @pytest.mark.slow
