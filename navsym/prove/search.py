@@ -46,7 +46,7 @@ EQUATIONS = (
 )
 SIGNS = (
     choose(
-        "number positive_radicand existence identity elimination sums_of_hypotheses "
+        "number positive_radicand existence identity kinks elimination sums_of_hypotheses "
         "range roots bounds corners product letters common_parts sum few_balls values side squares cones forms quadrics"
     ),
     choose(

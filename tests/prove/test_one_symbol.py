@@ -61,6 +61,15 @@ def test_what_touches_zero_is_proved_and_what_passes_it_by_little_is_refuted(tru
     assert status(false, ">=") == REFUTED
 
 
+@pytest.mark.parametrize("count", [3, 5, 9])
+def test_many_absolute_values_take_a_piece_between_two_zeros_each(count):
+    total = sum((sp.Abs(x - sp.Rational(k, 3)) for k in range(count)), sp.S.Zero)
+    middle = total.subs(x, sp.Rational(count // 2, 3))
+    assert decide(Bound(total, ">=", middle)).status == PROVED
+    assert decide(Bound(total, ">", middle)).status == REFUTED
+    assert decide(Bound(total, ">=", middle + THIN)).status == REFUTED
+
+
 @pytest.mark.parametrize("polynomial", [x**3 - x - 1, x**5 - x - 1])
 def test_equality_at_a_root_without_a_formula_is_no_point_of_a_certificate(polynomial):
     verdict = decide(Bound(polynomial**2, ">", sp.Integer(0)))

@@ -19,6 +19,7 @@ from navsym.prove.rooms.goals import (
     Term,
     factor,
     index_of,
+    inner_point,
     is_below,
     is_root,
     player,
@@ -77,9 +78,12 @@ def count_integers(name: str, low: int, high: int) -> Proof:
     return {"rule": "integers", "symbol": name, "from": low, "proofs": [Hole() for _ in range(low, high + 1)]}
 
 
-def split_at(name: str, at: int, proofs: list[Any]) -> Proof:
+def split_at(name: str, at: Any, proofs: list[Any]) -> Proof:
     """The rule that takes the two sides of a number."""
     return {"rule": "split", "symbol": name, "at": str(at), "proofs": proofs}
+
+
+MANY_VALUES = 3
 
 
 def by_values(goal: Any, sample: list[arb]) -> Iterator[Proof]:
@@ -87,6 +91,37 @@ def by_values(goal: Any, sample: list[arb]) -> Iterator[Proof]:
     terms = player.list_terms(goal.term)
     if goal.relation == "=" or len(terms) != 2 or not all(any(map(is_root, player.list_factors(t))) for t in terms):
         yield from by_cases(goal, sample)
+
+
+def by_kinks(goal: Any, sample: list[arb]) -> Iterator[Proof]:
+    """The two sides of a zero of many absolute values of one symbol, or their values where the range has no zero.
+
+    Of k values there are k + 1 pieces, and 2**k cases.
+    """
+    values = [*dict.fromkeys(part for part in subterms(goal.term) if part[0] == "abs")]
+    names = player.symbols_of(goal.term)
+    if len(names) != 1 or len(values) < MANY_VALUES:
+        return
+    try:
+        lines = {value: player.to_fraction(value[1]) for value in values}
+    except player.Refused:
+        return
+    if any(top.degree() != 1 or bottom.degree() > 0 for top, bottom in lines.values()):
+        return
+    (name,) = names
+    limit = goal.box[name]
+    inside = limit._replace(open_low=True, open_high=True, nonzero=False)
+    zeros = sorted({-top[0] / top[1] for top, _ in lines.values()})
+    zeros = [zero for zero in zeros if player.is_inside(player.number(zero), inside)]
+    if zeros:
+        yield split_at(name, zeros[len(zeros) // 2], Holes())
+        return
+    proof: Proof = Hole()
+    for value in values:
+        is_negative = player.value_of(value[1], {name: player.Jet(inner_point(limit, 0, 0))}) < 0
+        sign = player.negate(value[1]) if is_negative else value[1]
+        proof = rewrite_atom(write_term(value), write_term(sign)) | {"proof": proof}
+    yield proof
 
 
 def by_cases(goal: Any, sample: list[arb]) -> Iterator[Proof]:

@@ -24,7 +24,7 @@ from navsym.prove.sampling.points import Range
 BITS = (128, 512, 2048, 8192)
 MOST_DEGREE = 400
 #: Absolute values in one expression; each doubles the cases.
-MOST_VALUES = 4
+MOST_VALUES = 6
 #: Ends of a range are fractions with at most about so many bits: exp(10**12) is none.
 LONGEST = 10**5
 SHARES = ((1, 2), (1, 16), (15, 16), (1, 256), (255, 256))
@@ -55,13 +55,14 @@ class Places:
 
 def list_places(expression: sp.Expr, sides: Iterable[sp.Expr], limit: Range) -> Places | None:
     """The places of an expression in one symbol on its range, where sides have to exist; None for other functions."""
-    if limit.integer or (limit.lower is not None and limit.lower == limit.upper):
+    one_point = limit.lower is not None and limit.lower == limit.upper
+    if limit.integer or one_point or len(expression.atoms(sp.Abs)) > MOST_VALUES:
         return None
-    terms = [read_term(part) for part in list_cases(expression, MOST_VALUES)]
+    terms = [read_term(part) for part in list_cases(expression)]
     needed = player.set_union(player.conditions(read_term(side)) for side in (expression, *sides))
     pairs = [*map(read_fraction, terms)]
     others = [read_fraction(part) for _, part in needed]
-    if not terms or None in pairs:
+    if None in pairs:
         return None
     known = [polynomial for pair in (*pairs, *others) for polynomial in pair or ()]
     if any(polynomial.degree() > MOST_DEGREE for polynomial in known):
@@ -75,16 +76,16 @@ def list_places(expression: sp.Expr, sides: Iterable[sp.Expr], limit: Range) -> 
     return Places(between, (*inside, *ends), None not in others)
 
 
-def list_cases(expression: sp.Expr, left: int) -> Iterator[sp.Expr]:
-    """The expression for all signs of its absolute values, inner ones first, and what has these signs; none of many."""
+def list_cases(expression: sp.Expr) -> Iterator[sp.Expr]:
+    """The expression for all signs of its absolute values, inner ones first, and what has these signs."""
     values = sorted((v for v in expression.atoms(sp.Abs) if not v.args[0].has(sp.Abs)), key=sp.default_sort_key)
     if not values:
         yield expression
-    elif left > 0:
-        inside = values[0].args[0]
-        yield inside
-        for sign in (1, -1):
-            yield from list_cases(expression.xreplace({values[0]: sign * inside}), left - 1)
+        return
+    inside = values[0].args[0]
+    yield inside
+    for sign in (1, -1):
+        yield from list_cases(expression.xreplace({values[0]: sign * inside}))
 
 
 def read_fraction(term: Any) -> tuple[fmpq_poly, fmpq_poly] | None:
