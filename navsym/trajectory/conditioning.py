@@ -120,9 +120,10 @@ def certify_condition(statement: dict[str, Any], digits: int = 12) -> dict[str, 
 def extreme_values(matrix: flint.fmpq_mat, digits: int) -> tuple[int, tuple[Fraction, Fraction]]:
     """Bits, and the largest and the smallest eigenvalue, agreed on at half of these bits; all are real and positive.
 
-    A proposal, which its reader proves.
+    A proposal, which its reader proves. Entries of very different sizes hide eigenvalues at few bits.
     """
-    before, bits = None, 128
+    sizes = [abs(x) for x in matrix.entries() if x]
+    before, bits = None, min(128 + int(max(sizes) / min(sizes)).bit_length(), 10000)
     while bits <= 20000:
         with flint.ctx.workprec(bits):
             values = [x.real.mid() for x in flint.acb_mat(matrix).eig(algorithm="approx")]
@@ -240,6 +241,8 @@ def midpoints(image: flint.arb_mat) -> flint.arb_mat:
 #: Beyond this size the printed digits of the entries alone fill megabytes.
 LARGEST_ORDER = 120
 LARGEST_DIGITS = 2000
+#: Digits of an enclosure beside which the error of a double shows.
+BESIDE_DOUBLES = 20
 
 #: A double-precision value further off than this is not to be used.
 TRUST = 0.10
@@ -285,6 +288,14 @@ class MatrixCondition:
         return {**self.value.document(), **{name: getattr(self, name) for name in names}}
 
 
+def check_digits(digits: int) -> None:
+    """Refuse digits that no answer has: fewer than one, or more than :data:`LARGEST_DIGITS`."""
+    if digits < 1:
+        raise DomainError(f"expected 1 to {LARGEST_DIGITS}; got {digits}; ask for at least one", where="digits")
+    if digits > LARGEST_DIGITS:
+        raise TooLargeError(f"expected 1 to {LARGEST_DIGITS}; got {digits}; ask for fewer", where="digits")
+
+
 def condition_number(rows: Rows, *, digits: int = 30, equilibrate: bool = False) -> Enclosure:
     """Certified 2-norm condition number of a matrix with exact rational entries.
 
@@ -294,10 +305,7 @@ def condition_number(rows: Rows, *, digits: int = 30, equilibrate: bool = False)
     Raises DomainError and TooLargeError (digits), and NotEstimableError when the columns are dependent (the
     condition number is infinite).
     """
-    if digits < 1:
-        raise DomainError(f"expected 1 to {LARGEST_DIGITS}; got {digits}; ask for at least one", where="digits")
-    if digits > LARGEST_DIGITS:
-        raise TooLargeError(f"expected 1 to {LARGEST_DIGITS}; got {digits}; ask for fewer", where="digits")
+    check_digits(digits)
     found = condition_by_signs(rows, digits=digits, equilibrate=equilibrate)
     return found or condition_by_eigenvalues(rows, digits=digits, equilibrate=equilibrate)
 
@@ -393,7 +401,7 @@ class Conditions(Answer):
         for part, (_, rows, equilibrate) in zip(self, four_matrices(self.n, self.rho, self.tau), strict=True):
             ends = (Fraction(part.value.lower), Fraction(part.value.upper))
             statement = state_condition(rows, *ends, equilibrate=equilibrate)
-            found.append(certify_condition(statement, self.digits + 10))
+            found.append(certify_condition(statement, max(self.digits, BESIDE_DOUBLES) + 10))
         return found
 
     def __repr__(self) -> str:
@@ -446,8 +454,9 @@ def condition(
     parts = {}
     try:
         check_request(n, rho, tau)
+        check_digits(digits)
         for name, rows, equilibrate in four_matrices(n, rho, tau):
-            exact = condition_number(rows, digits=digits, equilibrate=equilibrate)
+            exact = condition_number(rows, digits=max(digits, BESIDE_DOUBLES), equilibrate=equilibrate)
             parts[name] = MatrixCondition(name, exact, digits, double_condition(rows, equilibrate))
             progress(name)
     except NavsymError as error:
@@ -464,12 +473,13 @@ def read_exactly(value: Any, where: str, unit: str) -> Fraction:
 
     text = drop_unit(write_value(value, where, unit), where, unit).strip()
     if not QUOTIENT.fullmatch(text):
-        message = f"expected a decimal or a fraction such as 1/6371000; got {text[:60]!r}; write it so"
+        numbers = "a decimal, or a fraction of two, of at most 60 digits"
+        message = f"expected {numbers}, such as 1/6371000; got {quote(text)}; write it so"
         raise ExpressionSyntaxError(message, where=where)
     above, _, below = text.partition("/")
     if below and Fraction(below) == 0:
         raise ExpressionSyntaxError("expected a denominator that is not zero; got 0; correct it", where=where)
     number = Fraction(above) / (Fraction(below) if below else 1)
-    if number and not Fraction(1, 10**100) < abs(number) < 10**100:
-        raise TooLargeError("expected a number between 1e-100 and 1e100; got another; rescale it", where=where)
+    if number and not Fraction(1, 10**100) <= abs(number) <= 10**100:
+        raise TooLargeError(f"expected a number between 1e-100 and 1e100; got {text}; rescale it", where=where)
     return number

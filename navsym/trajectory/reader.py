@@ -369,7 +369,7 @@ def acceptable(row: Row, log: Log) -> bool:
     )
     for name, value, fits, words in limits:
         if not fits(value):
-            message = f"{name}: expected a value {words}; got {value:g}; check the column and its unit"
+            message = f"{name}: expected a value {words}; got {value:.12g}; check the column and its unit"
             log.problem(DomainError, row.line, message)
             return False
     return True

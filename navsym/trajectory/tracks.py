@@ -8,6 +8,7 @@ itself by maximum likelihood, East and North together, Up for itself.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Sequence
 from dataclasses import asdict, dataclass, field, fields, replace
 from functools import partial
@@ -73,7 +74,7 @@ class Positions:
         steps = np.diff(self.t)
         if steps.size and not (steps.min() >= SHORTEST and steps.max() <= LONGEST):
             raise DomainError(
-                f"t: expected steps of {SHORTEST:g} to {LONGEST:g} s; got {steps.min():.3g} to {steps.max():.3g}; "
+                f"t: expected steps of {SHORTEST:g} to {LONGEST:g} s; got {steps.min():.9g} to {steps.max():.9g}; "
                 "check the unit of the times"
             )
         steps = np.maximum(steps, usual_step(self.t) if N > 1 else 1.0)
@@ -423,13 +424,14 @@ SLOW, FITTING, SMALLEST_WEIGHT = (3.0, 10.0, 30.0, 100.0), 0.2, 0.03
 def explanations(fit: Fit, own: Array) -> list[tuple[float, Array]]:
     """The likeliest point (9,) of the region and others, with weights: slow errors and slow motion look alike.
 
-    The others have no coloured error, or one of a given correlation time. Each weighs as its likelihood does, times
+    The others have no coloured error, or one of a given correlation time, or a steady last derivative. Each weighs as its likelihood does, times
     ``FITTING`` for each parameter (Hoeting, Madigan, Raftery, Volinsky 1999). Errors that drift have no others.
     """
-    if fit.fixed_scale or np.isfinite(own[6]):
+    if np.isfinite(own[6]):
         return [(1.0, own)]
     region, found = region_of(fit, own[0], own[1]), [(cost_of_shape(fit, own), own)]
-    for tau in (0.0, *(tau for tau in SLOW if tau > 2 * usual_step(fit.track.t))):
+    slow = () if fit.fixed_scale else (0.0, *(tau for tau in SLOW if tau > 2 * usual_step(fit.track.t)))
+    for tau in slow:
         still, start = own.copy(), own.copy()
         still[2], still[3], still[4] = -np.inf, np.log10(tau or 1.0), -np.inf
         start[2], start[4] = max(own[0], own[2]), max(own[4], -1.5)
@@ -437,6 +439,7 @@ def explanations(fit: Fit, own: Array) -> list[tuple[float, Array]]:
         simplex = np.vstack([start[free], start[free] + np.diag(np.array(FIRST_STEPS)[free])])
         cost, simplex = (part := replace(region, free=free, still=still)).descend(fit, simplex, ROUNDS[0])
         found.append((cost, part.whole(simplex[0])))
+    found += [(cost_of_shape(fit, steady), steady) for _, at in found for steady in steadily(fit, at)]
     costs = np.array([cost - 2.0 * np.isfinite(at[[2, 4]]).sum() * np.log(FITTING) for cost, at in found])
     weights = np.exp((costs.min() - costs) / 2.0)
     weights[1:][weights[1:] < SMALLEST_WEIGHT * weights.sum()] = 0.0
@@ -562,18 +565,51 @@ def region_of(fit: Fit, x: float, y: float, fading: float | None = None) -> Regi
     """
     step, found, drift = usual_step(fit.track.t), not fit.fixed_scale, fading is not None
     varied = not (fit.track.variance == fit.track.variance[:1]).all()
-    # With two states the last one is the speed, which no body forgets.
     free = np.array([found, True, found, found, fit.order > 2, found and varied, drift, drift, False])
     least, short, longest = np.log10(SMALLEST_SCALE), np.log10(step), max(LONGEST_TAU, np.log10(3 * step))
+    seen = seen_density(fit, x)
+    top = max(y + 6, seen + 2)  # the plain motion begins unknown, and may need no noise
     low = np.array([least, y - 6, COLOURS[0], short, RATES[0], EXPONENTS[0], DRIFTS[0], short, 0.0])
-    high = np.array([max(x + 2, 4.0), y + 6, COLOURS[1], longest, RATES[1], EXPONENTS[1], DRIFTS[1], longest, 1.0])
+    high = np.array([max(x + 2, 4.0), top, COLOURS[1], longest, RATES[1], EXPONENTS[1], DRIFTS[1], longest, 1.0])
     simplices = []
     for lift, tau, rate in GUESSES:
         error, slow = x + lift / 6, np.log10(tau * step)
-        guess = np.array([x - lift / 3, y, error, slow, np.log10(rate), 1.0 + lift / 10, error - 2 * slow, slow, 0.0])
-        start = np.clip(guess, low, high)[free]
+        motion = max(y, seen + np.log10(rate))
+        point = [x - lift / 3, motion, error, slow, np.log10(rate), 1.0 + lift / 10, error - 2 * slow, slow, 0.0]
+        start = np.clip(np.array(point), low, high)[free]
         simplices.append(np.vstack([start, start + np.diag(np.array(FIRST_STEPS)[free])]))
     return Region(free, np.array([x, y, -np.inf, 0.0, -np.inf, 1.0, -np.inf, 0.0, fading or 0.0]), low, high, simplices)
+
+
+#: Deviations by least squares of a steady last derivative that the rows just tell from none.
+SEEN = 3.0
+
+
+def seen_density(fit: Fit, x: float) -> float:
+    """Logarithm of density over rate of a motion whose last derivative the rows just tell from none.
+
+    Endless below for two states, whose last one is the speed, which no body forgets.
+    """
+    if fit.order < 3:
+        return -math.inf
+    t, m = fit.track.t[fit.use > 0], fit.order - 1
+    variance = 10.0**x * float(np.median(fit.track.variance[:, fit.channels[0]])) / len(t)
+    norm = (2 * m + 1) * (math.factorial(2 * m) / math.factorial(m)) ** 2
+    return float(np.log10(2.0 * SEEN**2 * norm * variance) - 2 * m * np.log10(t[-1] - t[0]))
+
+
+def steadily(fit: Fit, own: Array) -> list[Array]:
+    """The point with a steady last derivative that could just be seen, where the likeliest has a smaller one.
+
+    A likeliest derivative of zero would otherwise be taken for known.
+    """
+    seen = seen_density(fit, own[0])
+    if not (np.isfinite(own[4]) and own[1] < seen + own[4]):
+        return []
+    steady = own.copy()
+    steady[4] = RATES[0]
+    steady[1] = seen + steady[4]
+    return [steady]
 
 
 def cost_of_shape(fit: Fit, at: Array) -> float:

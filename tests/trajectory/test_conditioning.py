@@ -172,3 +172,21 @@ def test_the_checker_grants_each_end_of_an_answer_and_no_narrower_one(n: int) ->
             with pytest.raises(Refused):
                 check(certificate | {"statement": wrong})
             assert check(certify_condition(wrong, 40)) == "condition" and certify_condition(wrong, 40)["outside"]
+
+
+def test_the_error_of_a_double_does_not_depend_on_the_digits_that_are_shown() -> None:
+    """With one digit asked for the error of a good double was said to be 1e-6: that of the coarse enclosure."""
+    import navsym as nav
+
+    few, many = (nav.condition(5, tau="3", rho="1/2", digits=digits) for digits in (1, 40))
+    for one, other in zip(few, many, strict=True):
+        assert one.relative_error == pytest.approx(other.relative_error, rel=1e-3)
+
+
+@pytest.mark.parametrize("tau, rho", [("68750000000000000000", "-4/3"), ("1/500000000000000000000", "7")])
+def test_the_certificate_of_a_huge_condition_number_is_accepted(tau: str, rho: str) -> None:
+    """Eigenvalues at few bits agreed on a wrong smallest one, and the checker refused what was right."""
+    import navsym as nav
+
+    assert nav.condition(5, tau=tau, rho=rho, digits=3).check().accepted
+    assert nav.condition(1, tau="1e-100", rho="1e100").check().accepted

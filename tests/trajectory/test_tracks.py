@@ -272,6 +272,19 @@ def test_slow_errors_that_look_like_motion_are_counted():
     assert 0.7 < np.mean(means["all"]) < 1.5 < np.mean(means["likeliest"])
 
 
+@pytest.mark.parametrize("known", [True, False])
+def test_a_steady_acceleration_near_what_the_rows_can_tell_is_counted(known):
+    """Three deviations of its least squares: taken for none, the squared errors were 14 times their variance."""
+    t, squares = np.arange(60.0), []
+    acceleration = 3 * np.sqrt(720 / 60) / 60**2
+    for seed in range(4):
+        noise = np.random.default_rng(seed).normal(size=(60, 3))
+        place, speed = (np.outer(part, np.ones(3)) for part in (t**2 / 2 * acceleration, t * acceleration))
+        found, _ = estimate(flat_track(t, place + noise), Settings(fixed_scale=known))
+        squares.append(np.mean(((found.velocity - speed) / found.velocity_sd) ** 2))
+    assert 0.2 < np.mean(squares) < 2
+
+
 def test_the_first_row_of_a_straight_track_is_as_good_as_the_last():
     """A motion that forgets begins as it goes on: with a wide first acceleration the first speed was off by 5 m/s."""
     t, rng = np.arange(60.0), np.random.default_rng(3)
