@@ -9,7 +9,7 @@ from typing import Any
 
 import sympy as sp
 
-from navsym.claims import REFUTED, Bound, Claim, Equation, Optimum, claim
+from navsym.claims import REFUTED, Bound, Claim, Equation, Optimum, claim, claims
 from navsym.models.linear import LinearModel
 from navsym.models.transition.exponential import regressors
 from navsym_papers.guaranteed_velocity.model import INSTANTS, H, T, alternating, optimum, tau, weights
@@ -111,26 +111,6 @@ def dual_polynomial(at: sp.Expr) -> sp.Expr:
     return (alternating().T * H(at))[0]
 
 
-upper_bound_touched_once = claim(
-    "unique.upper-bound",
-    "1 - x.H > 0 at T/2 - v T/2, 0 < v <= 1, T <= 4 pi/3: by unique.symmetric it touches +1 at T/2 only.",
-    lambda: Bound(1 - dual_polynomial(T / 2 - v * T / 2), ">", 0, UNIQUE_BOX),
-)
-polynomial_is_symmetric = claim(
-    "unique.symmetric",
-    "x.H is symmetric about T/2 (T <= 4 pi/3), so that one half decides for both.",
-    lambda: Equation(dual_polynomial(T - tau), dual_polynomial(tau), {T: (0, 4 * sp.pi / 3)}),
-)
-# Every optimal weight function lives on the contacts of an optimal dual; with three contacts
-# and det N != 0 there is one such function for y2 (T <= 4 pi/3) and y3 (T <= 2 pi/3). This is
-# the argument that the paper leaves to (4.11).
-lower_bound_touched_at_the_ends = claim(
-    "unique.lower-bound",
-    "1 + x.H > 0 at v T/2, 0 < v <= 1, T <= 4 pi/3: by unique.symmetric it touches -1 at 0 and T only.",
-    lambda: Bound(1 + dual_polynomial(v * T / 2), ">", 0, UNIQUE_BOX),
-)
-
-
 s = sp.Symbol("s", nonnegative=True)  # T - tau, how long before the end
 
 
@@ -140,13 +120,25 @@ def contacts(dual: tuple, below: sp.Expr, above: sp.Expr) -> Equation:
     return Equation([below, above], [1 - value, 1 + value])
 
 
-# Every optimal weight function lives on the contacts of every optimal dual, so that the estimate is unique for
-# T < 2 pi. For T <= 4 pi/3 the argument from (4.11) serves as well: the dual of 4.6.same-instants has three contacts.
-velocity_touches_once = claim(
-    "range.y1.contacts",
-    "y1, every T: 1 - x.H = sin^2(s/2), s = T - tau, for the dual (1, 0, 1/2): for T < 2 pi one contact.",
+CLAIMS_UNIQUE = claims(
+    "unique.upper-bound | 1 - x.H > 0 at T/2 - v T/2, 0 < v <= 1, T <= 4 pi/3: by unique.symmetric it touches +1 "
+    "at T/2 only.",
+    lambda: Bound(1 - dual_polynomial(T / 2 - v * T / 2), ">", 0, UNIQUE_BOX),
+    "unique.symmetric | x.H is symmetric about T/2 (T <= 4 pi/3), so that one half decides for both.",
+    lambda: Equation(dual_polynomial(T - tau), dual_polynomial(tau), {T: (0, 4 * sp.pi / 3)}),
+    # Every optimal weight function lives on the contacts of an optimal dual; with three contacts and det N != 0 there
+    # is one for y2 (T <= 4 pi/3) and y3 (T <= 2 pi/3). This is the argument that the paper leaves to (4.11).
+    "unique.lower-bound | 1 + x.H > 0 at v T/2, 0 < v <= 1, T <= 4 pi/3: by unique.symmetric it touches -1 at 0 "
+    "and T only.",
+    lambda: Bound(1 + dual_polynomial(v * T / 2), ">", 0, UNIQUE_BOX),
+    # Every optimal weight function lives on the contacts of every optimal dual: unique for T < 2 pi. For T <= 4 pi/3
+    # the argument from (4.11) serves as well: the dual of 4.6.same-instants has three contacts.
+    "range.y1.contacts | y1, every T: 1 - x.H = sin^2(s/2), s = T - tau, for the dual (1, 0, 1/2): for T < 2 pi "
+    "one contact.",
     lambda: contacts((1, 0, sp.Rational(1, 2)), sp.sin(s / 2) ** 2, 1 + sp.cos(s / 2) ** 2),
 )
+
+
 other_dual_of_velocity = regime(
     "range.y1.other_dual",
     "y1, every T: the dual (1, 0, 1/2) is feasible and has the value 1.",
@@ -154,16 +146,16 @@ other_dual_of_velocity = regime(
 )
 
 
-@claim("range.y2.end.contacts")
-def tilt_touches_twice():
-    """y2, 4 pi/3 <= T <= 3 pi/2: zeros s = 2 pi - T of 1 - x.H and s = T of 1 + x.H (s = 0 too at T = 4 pi/3).
-
-    The last sine has an argument between 0 and pi. Contacts at 2(T - pi) and 0 make the estimate unique.
-    """
-    size = 2 / sp.sin(T) ** 2
-    return contacts(
-        DUALS[Y2], size * sp.sin((T + s) / 2) ** 2, size * sp.sin((T - s) / 2) * sp.sin((3 * T + s) / 2 - 2 * sp.pi)
-    )
+CLAIMS_RANGE = claims(
+    # The last sine has an argument between 0 and pi. Contacts at 2(T - pi) and 0 make the estimate unique.
+    "range.y2.end.contacts | y2, 4 pi/3 <= T <= 3 pi/2: zeros s = 2 pi - T of 1 - x.H and s = T of 1 + x.H (s = 0 "
+    "too at T = 4 pi/3).",
+    lambda: contacts(
+        DUALS[Y2],
+        2 / sp.sin(T) ** 2 * sp.sin((T + s) / 2) ** 2,
+        2 / sp.sin(T) ** 2 * sp.sin((T - s) / 2) * sp.sin((3 * T + s) / 2 - 2 * sp.pi),
+    ),
+)
 
 
 @claim("range.y2.last.contacts")
@@ -173,21 +165,17 @@ def tilt_touches_half_a_period_apart():
     return contacts((0, 1, 0), below, above)
 
 
-@claim("range.y3.end.contacts")
-def drift_touches_twice():
-    """y3, 2 pi/3 <= T <= pi: zeros s = pi - T of 1 - x.H and s = T of 1 + x.H (s = 0 too at T = 2 pi/3).
-
-    The last sine has an argument between 0 and pi. Contacts at 2 T - pi and 0 make the estimate unique.
-    """
-    size = 2 / sp.cos(T) ** 2
-    return contacts(
-        DUALS[Y3], size * sp.cos((T + s) / 2) ** 2, size * sp.sin((T - s) / 2) * sp.sin((3 * T + s) / 2 - sp.pi)
-    )
-
-
-drift_touches_half_a_period_apart = claim(
-    "range.y3.last.contacts",
-    "y3, T >= pi: x.H = cos s touches at s = 0 and pi; no other s below 2 pi, so unique for T < 2 pi.",
+CLAIMS_RANGE_2 = claims(
+    # The last sine has an argument between 0 and pi. Contacts at 2 T - pi and 0 make the estimate unique.
+    "range.y3.end.contacts | y3, 2 pi/3 <= T <= pi: zeros s = pi - T of 1 - x.H and s = T of 1 + x.H (s = 0 too at "
+    "T = 2 pi/3).",
+    lambda: contacts(
+        DUALS[Y3],
+        2 / sp.cos(T) ** 2 * sp.cos((T + s) / 2) ** 2,
+        2 / sp.cos(T) ** 2 * sp.sin((T - s) / 2) * sp.sin((3 * T + s) / 2 - sp.pi),
+    ),
+    "range.y3.last.contacts | y3, T >= pi: x.H = cos s touches at s = 0 and pi; no other s below 2 pi, so unique "
+    "for T < 2 pi.",
     lambda: contacts((1, 0, 1), 2 * sp.sin(s / 2) ** 2, 2 * sp.cos(s / 2) ** 2),
 )
 

@@ -4,7 +4,7 @@ from itertools import product
 
 import sympy as sp
 
-from navsym.claims import PROVED, Bound, Equation, Finding, Property, claim, state
+from navsym.claims import PROVED, Bound, Equation, Finding, Property, claim, claims, state
 from navsym.language.expression import to_text
 from navsym.prove.identities import vanishes_identically
 from navsym.prove.signs import Sign, prove_sign
@@ -38,14 +38,10 @@ def regressor_of_general_system(size: int) -> Equation:
     return Equation(prediction, z)
 
 
-general_regressor_of_two_states = claim(
-    "2.4.two",
-    "z = H* q + w with the printed H, for every system of two states.",
+CLAIMS_2_4 = claims(
+    "2.4.two | z = H* q + w with the printed H, for every system of two states.",
     lambda: regressor_of_general_system(2),
-)
-general_regressor_of_three_states = claim(
-    "2.4.three",
-    "z = H* q + w with the printed H, for every system of three states.",
+    "2.4.three | z = H* q + w with the printed H, for every system of three states.",
     lambda: regressor_of_general_system(3),
 )
 
@@ -76,13 +72,6 @@ def error_without_noise(count: int) -> Equation:
     return Equation(tuple(defect), tuple(coefficients))
 
 
-unbiasedness = claim(
-    "2.6",
-    "The error without noise vanishes for every q exactly when the integral of H Phi is P (3 instants).",
-    lambda: error_without_noise(3),
-)
-
-
 def piecewise(name: str) -> tuple[sp.Expr, sp.Expr]:
     """A piecewise continuous function of s: one polynomial of degree 2 before the time b, another one behind it."""
     c = sp.symbols(f"{name}1:7", real=True)
@@ -97,6 +86,12 @@ def integral(pieces: tuple[sp.Expr, sp.Expr], impulse: sp.Expr) -> sp.Expr:
 
 def products(one: tuple[sp.Expr, sp.Expr], other: tuple[sp.Expr, sp.Expr]) -> tuple[sp.Expr, sp.Expr]:
     return one[0] * other[0], one[1] * other[1]
+
+
+CLAIMS_2_6 = claims(
+    "2.6 | The error without noise vanishes for every q exactly when the integral of H Phi is P (3 instants).",
+    lambda: error_without_noise(3),
+)
 
 
 @claim("2.6.piecewise")
@@ -196,24 +191,19 @@ def objective(correlation: int) -> Equation:
     return Equation((sigma * (a1 + a2)) ** 2, variance((a1, a2), between, (sigma, sigma)))
 
 
-name_of_the_problem = claim(
-    "2.7.name",
-    "After (2.7): its objective belongs to the best correlation, -1 for two weights of one sign.",
-    lambda: objective(-1),
-    slip="paper",
-    reason="the introduction, which cites [3] too, calls it the problem of the worst correlation, and so it is",
-)
-name_of_the_problem_corrected = claim(
-    "2.7.name*",
-    "After (2.7): its objective belongs to the worst correlation, +1 for two weights of one sign.",
-    lambda: objective(1),
-)
-
-
 def modulus(weight: sp.Expr) -> sp.Expr:
     """|weight| on the stated range, by its proved sign."""
     positive = prove_sign(weight, STATED).at_least(Sign.NONNEGATIVE)
     return weight if positive else -weight
+
+
+CLAIMS_2_7 = claims(
+    "2.7.name | After (2.7): its objective belongs to the best correlation, -1 for two weights of one sign. | "
+    "paper: the introduction, which cites [3] too, calls it the problem of the worst correlation, and so it is",
+    lambda: objective(-1),
+    "2.7.name* | After (2.7): its objective belongs to the worst correlation, +1 for two weights of one sign.",
+    lambda: objective(1),
+)
 
 
 # -- section 3 ---------------------------------------
@@ -248,25 +238,10 @@ def terms_of_weak_duality():
     return Bound(sp.Abs(Phi) - Phi * bounded, ">=", 0, {bounded: (-1, 1)})
 
 
-@claim("3.2")
+@claim("3.2 | The system N Phi = P at the instants 0, T/2, T is consistent, for each of the three states.")
 def weights_solve_the_system():
-    """The system N Phi = P at the instants 0, T/2, T is consistent, for each of the three states."""
     columns = sp.Matrix.hstack(*(H(at) for at in INSTANTS))
     return Equation(sp.eye(3), sp.Matrix.hstack(*[columns * sp.Matrix(weights(state)) for state in range(3)]), STATED)
-
-
-number_of_contacts = claim(
-    "3.2.contacts",
-    "The optimal duals (1, 0, 0) of y1 and the alternating one of y2, y3 touch their bounds at m = 3 instants at most.",
-    lambda: Property((True, True, True), finitely_many_contacts(), say_contacts("!=")),
-    slip="paper",
-    reason="for y1 the optimal dual (1, 0, 0) gives |X.H| = 1 at every instant; l <= m holds for a basis only",
-)
-number_of_contacts_corrected = claim(
-    "3.2.contacts*",
-    "The dual (1, 0, 0) of y1 touches at every instant, the alternating one at finitely many (three: unique.*).",
-    lambda: Property((False, True, True), finitely_many_contacts(), say_contacts("=")),
-)
 
 
 def slope_at_the_start() -> sp.Expr:
@@ -294,13 +269,18 @@ def sums_of_weights(weights_: tuple) -> tuple:
     return (*(columns * sp.Matrix(weights_)), sum(abs(w) for w in weights_))
 
 
-any_solution_is_optimal = claim(
-    "3.2.theorem",
-    "After (3.2): every solution at the contacts of an optimal dual has the value X0.P; here Phi = (5, -1/2, -9/2).",
+CLAIMS_3_2 = claims(
+    "3.2.contacts | The optimal duals (1, 0, 0) of y1 and the alternating one of y2, y3 touch their bounds at m = "
+    "3 instants at most. | paper: for y1 the optimal dual (1, 0, 0) gives |X.H| = 1 at every instant; l <= m holds "
+    "for a basis only",
+    lambda: Property((True, True, True), finitely_many_contacts(), say_contacts("!=")),
+    "3.2.contacts* | The dual (1, 0, 0) of y1 touches at every instant, the alternating one at finitely many "
+    "(three: unique.*).",
+    lambda: Property((False, True, True), finitely_many_contacts(), say_contacts("=")),
+    "3.2.theorem | After (3.2): every solution at the contacts of an optimal dual has the value X0.P; here Phi = "
+    "(5, -1/2, -9/2). | paper: a solution of (3.2) for y3 at T = 2 pi, X0 = (1, 0, 1), contacts 0, pi, 2 pi has "
+    "sum |Phi_j| = 10, not 1; the signs of the weights have to be those of X0.H(tau_j)",
     lambda: Equation((0, 0, 1, 1), sums_of_weights((5, -sp.Rational(1, 2), -sp.Rational(9, 2)))),
-    slip="paper",
-    reason="a solution of (3.2) for y3 at T = 2 pi, X0 = (1, 0, 1), contacts 0, pi, 2 pi has sum |Phi_j| = 10, not 1; "
-    "the signs of the weights have to be those of X0.H(tau_j)",
 )
 
 
@@ -327,9 +307,8 @@ def contact_without_solution():
     return Bound(sp.expand((defect.T * defect)[0]), ">", 0)
 
 
-@claim("3.3")
+@claim("3.3 | (3.1) becomes (3.3): with x = (1, u2, u3)/L the bound |x.H| <= 1 reads |H1 + u2 H2 + u3 H3| <= L.")
 def scaling_to_a_polynomial():
-    """(3.1) becomes (3.3): with x = (1, u2, u3)/L the bound |x.H| <= 1 reads |H1 + u2 H2 + u3 H3| <= L."""
     L = sp.Symbol("L", positive=True)
     u2, u3, h1, h2, h3 = sp.symbols("u2 u3 H1 H2 H3", real=True)
     printed = (h1 + u2 * h2 + u3 * h3) / L
@@ -346,20 +325,6 @@ def dual_of_a_polynomial():
     return Equation(h1 + x2 * L * h2 + x3 * L * h3, L * (x1 * h1 + x2 * h2 + x3 * h3))
 
 
-variables_of_the_minimum = claim(
-    "3.3.min",
-    "The minimum of (3.3) is taken over z_2, z_3, as printed.",
-    lambda: Property(("z2", "z3"), coefficients_of_the_polynomial(), say_coefficients("z2", "z3")),
-    slip="undecidable",
-    reason="z_j stands below the minimum; the polynomial has the coefficients u_j, as (3.4) and (4.2) have them",
-)
-variables_of_the_minimum_corrected = claim(
-    "3.3.min*",
-    "The minimum of (3.3) is taken over u_2, u_3.",
-    lambda: Property(("u2", "u3"), coefficients_of_the_polynomial(), say_coefficients("u2", "u3")),
-)
-
-
 def coefficients_of_the_polynomial() -> Finding:
     """On which of z2, z3, u2, u3 the polynomial of (3.3) depends: a minimum over any other changes nothing."""
     names = sp.symbols("z2 z3 u2 u3", real=True)
@@ -374,6 +339,15 @@ def say_coefficients(second: str, third: str) -> tuple[dict, ...]:
     slopes = {"z2": "0", "z3": "0", "u2": "0", "u3": "0"} | {second: "H2", third: "H3"}
     line = {name: [None, None, ["nonzero"] if name in ("H2", "H3") else []] for name in ("H1", "H2", "H3", *slopes)}
     return tuple(state(f"diff(H1 + u2*H2 + u3*H3, {name})", "=", slope, line) for name, slope in slopes.items())
+
+
+CLAIMS_3_3 = claims(
+    "3.3.min | The minimum of (3.3) is taken over z_2, z_3, as printed. | undecidable: z_j stands below the "
+    "minimum; the polynomial has the coefficients u_j, as (3.4) and (4.2) have them",
+    lambda: Property(("z2", "z3"), coefficients_of_the_polynomial(), say_coefficients("z2", "z3")),
+    "3.3.min* | The minimum of (3.3) is taken over u_2, u_3.",
+    lambda: Property(("u2", "u3"), coefficients_of_the_polynomial(), say_coefficients("u2", "u3")),
+)
 
 
 @claim("3.4")
@@ -393,23 +367,18 @@ def least_deviation() -> sp.Expr:
     return 1 / alternating()[2]
 
 
-value_without_sigma = claim(
-    "3.6",
-    "sigma integral |Phi| = L^-1, as printed, for y3.",
-    lambda: Equation(1 / least_deviation(), sigma * total_variation(), STATED),
-    slip="undecidable",
-    reason="the factor sigma is lost on the right: (4.13) has sigma1/L, and the units ask for it",
-)
-value_with_sigma = claim(
-    "3.6*",
-    "sigma integral |Phi| = sigma L^-1, for y3.",
-    lambda: Equation(sigma / least_deviation(), sigma * total_variation(), STATED),
-)
-
-
 def total_variation() -> sp.Expr:
     """sum |Phi_j| for y3 on the stated range."""
     return sum((modulus(w) for w in weights(2)), sp.Integer(0))
+
+
+CLAIMS_3_6 = claims(
+    "3.6 | sigma integral |Phi| = L^-1, as printed, for y3. | undecidable: the factor sigma is lost on the right: "
+    "(4.13) has sigma1/L, and the units ask for it",
+    lambda: Equation(1 / least_deviation(), sigma * total_variation(), STATED),
+    "3.6* | sigma integral |Phi| = sigma L^-1, for y3.",
+    lambda: Equation(sigma / least_deviation(), sigma * total_variation(), STATED),
+)
 
 
 @claim("3.more-measurements")

@@ -2,7 +2,7 @@
 
 import sympy as sp
 
-from navsym.claims import PROVED, Bound, Equation, Finding, Optimum, Property, claim, fact, state
+from navsym.claims import PROVED, Bound, Equation, Finding, Optimum, Property, claim, claims, fact, state
 from navsym.language.expression import to_text
 from navsym.prove.identities import vanishes_identically
 from navsym.prove.signs import Sign, prove_sign
@@ -43,26 +43,21 @@ def rotated() -> sp.Matrix:
 
 #: Of determinant 1; that of an exchange is -1.
 CYCLE = sp.Matrix([[0, 0, 1], [1, 0, 0], [0, 1, 0]])
-permuted = claim(
-    "4.1",
-    "The permuted H, as printed.",
+
+
+CLAIMS_4_1 = claims(
+    "4.1 | The permuted H, as printed. | paper: the third component inherits the sign of (1.9)",
     lambda: Equation([sp.cos(T - tau) - 1, 1, -sp.sin(T - tau)], list(rotated())),
-    slip="paper",
-    reason="the third component inherits the sign of (1.9)",
-)
-permuted_corrected = claim(
-    "4.1*", "The permuted H.", lambda: Equation([sp.cos(T - tau) - 1, 1, sp.sin(T - tau)], list(rotated()))
-)
-permutation_is_a_cycle = claim(
-    "4.1.order",
-    "(4.1) is the cyclic shift (H3, H1, H2), where remark 3.1 speaks of one exchange; nothing depends on it.",
+    "4.1* | The permuted H.",
+    lambda: Equation([sp.cos(T - tau) - 1, 1, sp.sin(T - tau)], list(rotated())),
+    "4.1.order | (4.1) is the cyclic shift (H3, H1, H2), where remark 3.1 speaks of one exchange; nothing depends "
+    "on it.",
     lambda: Equation([sp.cos(T - tau) - 1, 1, sp.sin(T - tau), 1], [*(CYCLE * H()), CYCLE.det()]),
 )
 
 
-@claim("4.2")
+@claim("4.2 | S(tau) = cos(T - tau) - 1 + u2 + u3 sin(T - tau), with the sine as in the derived H.")
 def polynomial_to_be_minimised():
-    """S(tau) = cos(T - tau) - 1 + u2 + u3 sin(T - tau), with the sine as in the derived H."""
     u2, u3 = sp.symbols("u2 u3", real=True)
     printed = sp.cos(T - tau) - 1 + u2 + u3 * sp.sin(T - tau)
     return Equation(printed, polynomial(u2, u3))
@@ -71,22 +66,19 @@ def polynomial_to_be_minimised():
 # -- (4.3) to (4.6) ---------------------------------------
 
 
-constant_coefficient = claim(
-    "4.3.u2",
-    "u2 as printed.",
+CLAIMS_4_3 = claims(
+    "4.3.u2 | u2 as printed. | undecidable: the minus is lost: S(0) = u2 and S(T/2) = 1/cos(T/2) - 1 + u2 are "
+    "opposite only for u2 < 0",
     lambda: Equation(U2_PRINTED, coefficients()[0], STATED),
-    slip="undecidable",
-    reason="the minus is lost: S(0) = u2 and S(T/2) = 1/cos(T/2) - 1 + u2 are opposite only for u2 < 0",
+    "4.3.u2* | u2 = -sin^2(T/4)/cos(T/2).",
+    lambda: Equation(-U2_PRINTED, coefficients()[0], STATED),
+    "4.3.u3 | u3 = tan(T/2).",
+    lambda: Equation(U3_PRINTED, coefficients()[1], STATED),
 )
-constant_coefficient_corrected = claim(
-    "4.3.u2*", "u2 = -sin^2(T/4)/cos(T/2).", lambda: Equation(-U2_PRINTED, coefficients()[0], STATED)
-)
-sine_coefficient = claim("4.3.u3", "u3 = tan(T/2).", lambda: Equation(U3_PRINTED, coefficients()[1], STATED))
 
 
-@claim("4.3.unique")
+@claim("4.3.unique | The equations of alternance have one solution: their determinant does not vanish for T <= pi/2.")
 def alternance_determines_the_polynomial():
-    """The equations of alternance have one solution: their determinant does not vanish for T <= pi/2."""
     u2, u3, L = sp.symbols("u2 u3 L", real=True)
     conditions = [polynomial(u2, u3).subs(tau, at) - sign * L for at, sign in zip(INSTANTS, (-1, 1, -1), strict=True)]
     matrix = sp.Matrix(conditions).jacobian([u2, u3, L])
@@ -99,59 +91,40 @@ def least_deviation(u2: sp.Expr) -> Optimum:
     return optimum(2, dual, INSTANTS, weights(2), 1 / L1_PRINTED)
 
 
-printed_polynomial_deviates_least = claim(
-    "4.4",
-    "S0 with the printed u2, u3 deviates least from zero: optimal for y3, as printed.",
-    lambda: least_deviation(U2_PRINTED),
-    slip="undecidable",
-    reason="with the printed u2 the polynomial leaves the band [-L1, L1]; the sign of u2 is the only cause",
-)
-corrected_polynomial_deviates_least = claim(
-    "4.4*",
-    "S0 with u2 = -sin^2(T/4)/cos(T/2), u3 = tan(T/2) deviates least from zero: optimal for y3.",
-    lambda: least_deviation(-U2_PRINTED),
-)
-polynomial_is_a_shifted_cosine = claim(
-    "4.4.closed-form",
-    "S0(tau) = (2 cos(tau - T/2) - 1 - cos(T/2)) / (2 cos(T/2)): what the graphs of the paper show.",
-    lambda: Equation(
-        (2 * sp.cos(tau - T / 2) - 1 - sp.cos(T / 2)) / (2 * sp.cos(T / 2)), polynomial(*coefficients()), STATED
-    ),
-)
-largest_deviation = claim(
-    "4.5", "The largest deviation L1 = sin^2(T/4)/cos(T/2).", lambda: Equation(L1_PRINTED, deviation(), STATED)
-)
-deviation_is_positive = claim(
-    "4.5.positive",
-    "L1 is positive on the stated range, so that the bars of modulus in (4.5) may be dropped.",
-    lambda: Bound(L1_PRINTED, ">", 0, STATED),
-)
-
-
 def value_at(instant: sp.Expr) -> sp.Expr:
     return polynomial(*coefficients()).subs(tau, instant)
 
 
-contacts = claim(
-    "4.6",
-    "S0 takes the values -L1, +L1, -L1 at tau = 0, T/2, T.",
+def instants_in_use() -> Finding:
+    """Number of weights that have a sign on the stated range; the others have to vanish identically."""
+    signs = [[proved_sign(w) for w in weights(index)] for index in range(3)]
+    others = [w for index, row in enumerate(signs) for w, sign in zip(weights(index), row, strict=True) if not sign]
+    counts = tuple(sum(map(abs, row)) for row in signs) if all(map(vanishes_identically, others)) else None
+    return Finding(counts, "signs and normal forms of the weights", PROVED, "all T in (0, pi/2]")
+
+
+CLAIMS_4_4 = claims(
+    "4.4 | S0 with the printed u2, u3 deviates least from zero: optimal for y3, as printed. | undecidable: with "
+    "the printed u2 the polynomial leaves the band [-L1, L1]; the sign of u2 is the only cause",
+    lambda: least_deviation(U2_PRINTED),
+    "4.4* | S0 with u2 = -sin^2(T/4)/cos(T/2), u3 = tan(T/2) deviates least from zero: optimal for y3.",
+    lambda: least_deviation(-U2_PRINTED),
+    "4.4.closed-form | S0(tau) = (2 cos(tau - T/2) - 1 - cos(T/2)) / (2 cos(T/2)): what the graphs of the paper show.",
+    lambda: Equation(
+        (2 * sp.cos(tau - T / 2) - 1 - sp.cos(T / 2)) / (2 * sp.cos(T / 2)), polynomial(*coefficients()), STATED
+    ),
+    "4.5 | The largest deviation L1 = sin^2(T/4)/cos(T/2).",
+    lambda: Equation(L1_PRINTED, deviation(), STATED),
+    "4.5.positive | L1 is positive on the stated range, so that the bars of modulus in (4.5) may be dropped.",
+    lambda: Bound(L1_PRINTED, ">", 0, STATED),
+    "4.6 | S0 takes the values -L1, +L1, -L1 at tau = 0, T/2, T.",
     lambda: Equation([-L1_PRINTED, L1_PRINTED, -L1_PRINTED], [value_at(at) for at in INSTANTS], STATED),
-)
-middle_contact_is_stationary = claim(
-    "4.6.stationary",
-    "The slope of S0 vanishes at tau = T/2: an inner extremum.",
+    "4.6.stationary | The slope of S0 vanishes at tau = T/2: an inner extremum.",
     lambda: Equation(sp.Integer(0), sp.diff(polynomial(*coefficients()), tau).subs(tau, T / 2), STATED),
-)
-same_instants_for_all = claim(
-    "4.6.same-instants",
-    "The contacts (4.6) serve y1 as well: its dual is that of y3 with the other sign (y2 and y3: 4.13).",
+    "4.6.same-instants | The contacts (4.6) serve y1 as well: its dual is that of y3 with the other sign (y2 and "
+    "y3: 4.13).",
     lambda: optimum(0, tuple(-alternating()), INSTANTS, weights(0), sp.Integer(1)),
-)
-
-
-instants_of_each_state = claim(
-    "4.6.weights",
-    "Of the weights at (4.6) one is not zero for y1, all three for y2 and y3, as (4.12) prints.",
+    "4.6.weights | Of the weights at (4.6) one is not zero for y1, all three for y2 and y3, as (4.12) prints.",
     lambda: Property(
         printed=(1, 3, 3),
         derived=instants_in_use(),
@@ -164,41 +137,15 @@ instants_of_each_state = claim(
 )
 
 
-def instants_in_use() -> Finding:
-    """Number of weights that have a sign on the stated range; the others have to vanish identically."""
-    signs = [[proved_sign(w) for w in weights(index)] for index in range(3)]
-    others = [w for index, row in enumerate(signs) for w, sign in zip(weights(index), row, strict=True) if not sign]
-    counts = tuple(sum(map(abs, row)) for row in signs) if all(map(vanishes_identically, others)) else None
-    return Finding(counts, "signs and normal forms of the weights", PROVED, "all T in (0, pi/2]")
-
-
 # -- (4.7) to (4.9) ---------------------------------------
 
 
-@claim("4.7")
+@claim("4.7 | Three impulses at 0, T/2, T with the weights of (4.12) are optimal for y3.")
 def three_impulses_solve_the_problem():
-    """Three impulses at 0, T/2, T with the weights of (4.12) are optimal for y3."""
     sine = sp.sin(T / 4) ** 2
     printed = (-1 / (4 * sine), sp.cos(T / 2) / (2 * sine), (1 - 2 * sp.cos(T / 2)) / (4 * sine))
     x = alternating()
     return optimum(2, tuple(x), INSTANTS, printed, x[2])
-
-
-second_deviation = claim(
-    "4.8.L2",
-    "L2 = |u2|/L1 (true because both are equal).",
-    lambda: Equation(-coefficients()[0] / deviation(), optimal_deviation(0), STATED),
-)
-third_deviation = claim(
-    "4.8.L3",
-    "L3 = |u3|/L1, as printed.",
-    lambda: Equation(coefficients()[1] / deviation(), optimal_deviation(1), STATED),
-    slip="undecidable",
-    reason="the exponent -1 of L_s is lost: (3.4) gives 1/L_s = |u_s|/L1, and (4.9) was computed from that",
-)
-third_deviation_corrected = claim(
-    "4.8.L3*", "L3 = L1/|u3|.", lambda: Equation(deviation() / coefficients()[1], optimal_deviation(1), STATED)
-)
 
 
 def optimal_deviation(state: int) -> sp.Expr:
@@ -207,6 +154,17 @@ def optimal_deviation(state: int) -> sp.Expr:
         return 1 / sum((w for w in weights(0)), sp.Integer(0))  # one weight, equal to one
     first, middle, last = weights(state)
     return 1 / (-first + middle - last)  # signs -, +, - on the stated range
+
+
+CLAIMS_4_8 = claims(
+    "4.8.L2 | L2 = |u2|/L1 (true because both are equal).",
+    lambda: Equation(-coefficients()[0] / deviation(), optimal_deviation(0), STATED),
+    "4.8.L3 | L3 = |u3|/L1, as printed. | undecidable: the exponent -1 of L_s is lost: (3.4) gives 1/L_s = "
+    "|u_s|/L1, and (4.9) was computed from that",
+    lambda: Equation(coefficients()[1] / deviation(), optimal_deviation(1), STATED),
+    "4.8.L3* | L3 = L1/|u3|.",
+    lambda: Equation(deviation() / coefficients()[1], optimal_deviation(1), STATED),
+)
 
 
 @claim("4.8.signs")
@@ -225,9 +183,9 @@ def proved_sign(weight: sp.Expr) -> int:
     return 0
 
 
-value_of_second_deviation = claim(
-    "4.9.L2", "The second deviation L2 is 1.", lambda: Equation(sp.Integer(1), optimal_deviation(0), STATED)
-)
-value_of_third_deviation = claim(
-    "4.9.L3", "The third deviation L3 is tan(T/4)/2.", lambda: Equation(sp.tan(T / 4) / 2, optimal_deviation(1), STATED)
+CLAIMS_4_9 = claims(
+    "4.9.L2 | The second deviation L2 is 1.",
+    lambda: Equation(sp.Integer(1), optimal_deviation(0), STATED),
+    "4.9.L3 | The third deviation L3 is tan(T/4)/2.",
+    lambda: Equation(sp.tan(T / 4) / 2, optimal_deviation(1), STATED),
 )

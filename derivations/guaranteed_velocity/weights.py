@@ -2,19 +2,9 @@
 
 import sympy as sp
 
-from navsym.claims import Bound, Claim, Equation, claim
-from navsym_papers.guaranteed_velocity.model import (
-    INSTANTS,
-    STATED,
-    H,
-    N,
-    T,
-    alternating,
-    optimum,
-    sigma1,
-    sigma2,
-    weights,
-)
+from navsym.claims import Bound, Claim, Equation, claim, claims
+from navsym_papers.guaranteed_velocity import model
+from navsym_papers.guaranteed_velocity.model import INSTANTS, STATED, N, T, alternating, optimum, sigma2, weights
 
 # -- (4.10), (4.11) ---------------------------------------
 
@@ -22,27 +12,17 @@ from navsym_papers.guaranteed_velocity.model import (
 PRINTED_N = sp.Matrix([[1, 1, 0], [sp.sin(T), sp.sin(T / 2), 0], [sp.cos(T) - 1, sp.cos(T / 2) - 1, 0]])
 
 
-matrix_n = claim(
-    "4.11.N",
-    "The matrix N, as printed.",
+CLAIMS_4_11 = claims(
+    "4.11.N | The matrix N, as printed. | undecidable: entry (1, 3): H(T) = (1, 0, 0); a zero column would make "
+    "det N zero, and the printed one is right",
     lambda: Equation(PRINTED_N, N()),
-    slip="undecidable",
-    reason="entry (1, 3): H(T) = (1, 0, 0); a zero column would make det N zero, and the printed one is right",
-)
-matrix_n_corrected = claim(
-    "4.11.N*",
-    "The matrix N with the last column (1, 0, 0).",
+    "4.11.N* | The matrix N with the last column (1, 0, 0).",
     lambda: Equation(PRINTED_N + sp.Matrix([[0, 0, 1], [0, 0, 0], [0, 0, 0]]), N()),
-)
-determinant = claim(
-    "4.11.det", "det N = 4 sin(T/2) sin^2(T/4).", lambda: Equation(4 * sp.sin(T / 2) * sp.sin(T / 4) ** 2, N().det())
-)
-determinant_does_not_vanish = claim(
-    "4.11.nonzero", "det N is not zero for 0 < T <= pi/2.", lambda: Bound(N().det(), "!=", 0, STATED)
-)
-determinant_does_not_vanish_further = claim(
-    "4.11.nonzero-beyond",
-    "det N is not zero for 0 < T <= 6, far beyond the stated range.",
+    "4.11.det | det N = 4 sin(T/2) sin^2(T/4).",
+    lambda: Equation(4 * sp.sin(T / 2) * sp.sin(T / 4) ** 2, N().det()),
+    "4.11.nonzero | det N is not zero for 0 < T <= pi/2.",
+    lambda: Bound(N().det(), "!=", 0, STATED),
+    "4.11.nonzero-beyond | det N is not zero for 0 < T <= 6, far beyond the stated range.",
     lambda: Bound(N().det(), "!=", 0, {T: (0, 6)}),
 )
 
@@ -57,9 +37,8 @@ PRINTED_WEIGHTS = (
 )
 
 
-weights_by_inversion = claim(
-    "4.10",
-    "Phi_s = N^-1 e_s: with the printed weights (4.12) as columns of Phi, N Phi is the identity.",
+CLAIMS_4_10 = claims(
+    "4.10 | Phi_s = N^-1 e_s: with the printed weights (4.12) as columns of Phi, N Phi is the identity.",
     lambda: Equation(sp.eye(3), N() * sp.Matrix(PRINTED_WEIGHTS).T, STATED),
 )
 
@@ -104,16 +83,15 @@ OPTIMAL_ERRORS = tuple(
     )
     for s in range(3)
 )
-lateral_errors = claim(
-    "4.13.sigma",
-    "d_opt of y1, y2, y3 is sigma1 times the sum of the moduli of its weights.",
-    lambda: errors_with_sigma(sigma1),
-)
-longitudinal_errors = claim(
-    "4.15",
-    "d_opt of y4, y5, y6 is sigma2 times the sum of the moduli of the same weights.",
+
+
+CLAIMS_4_13 = claims(
+    "4.13.sigma | d_opt of y1, y2, y3 is sigma1 times the sum of the moduli of its weights.",
+    lambda: errors_with_sigma(model.sigma1),
+    "4.15 | d_opt of y4, y5, y6 is sigma2 times the sum of the moduli of the same weights.",
     lambda: errors_with_sigma(sigma2),
 )
+
 
 # -- (4.14), (4.16): estimates ---------------------------------------
 
@@ -160,33 +138,29 @@ def estimates(equation: str, velocity: int, tilt: int) -> tuple[Claim, Claim, Cl
 
 
 lateral_estimates = estimates("4.14", 1, 2)
-drift_estimate = claim("4.14.y3", "The estimate of y3.", lambda: Equation(PRINTED_DRIFT, derived_estimate(2), STATED))
+
+
+CLAIMS_4_14 = claims("4.14.y3 | The estimate of y3.", lambda: Equation(PRINTED_DRIFT, derived_estimate(2), STATED))
+
+
 longitudinal_estimates = estimates("4.16", 4, 5)
-longitudinal_drift_estimate = claim(
-    "4.16.y6",
-    "The estimate of y6 with the brackets as they stand.",
-    lambda: Equation(
-        (-z0 + 2 * sp.cos(T / 2) * zm + (1 - 2 * sp.cos(T / 2) * zT)) / (4 * SINE), derived_estimate(2), STATED
-    ),
-    slip="undecidable",
-    reason="(4.14) has the bracket that is missing here after 2 cos(T/2): read as it stands, 1 is not multiplied by z",
-)
-longitudinal_drift_estimate_corrected = claim(
-    "4.16.y6*",
-    "The estimate of y6 with the bracket closed before the measurement.",
-    lambda: Equation(PRINTED_DRIFT, derived_estimate(2), STATED),
-)
 
 
 def bias_of_printed_tilt(state: int) -> sp.Expr:
     """Coefficient of y_state in the printed estimate of y2 when nothing is noisy."""
-    vector = [H(at)[state] for at in INSTANTS]
+    vector = [model.H(at)[state] for at in INSTANTS]
     return estimate_of_tilt(PRINTED_FIRST).subs(dict(zip((z0, zm, zT), vector, strict=True)), simultaneous=True)
 
 
-printed_tilt_estimate_is_biased = claim(
-    "4.14.y2.bias",
-    "What the slip costs: a velocity error y1 enters the printed estimate of y2 with this factor.",
+CLAIMS_4_16 = claims(
+    "4.16.y6 | The estimate of y6 with the brackets as they stand. | undecidable: (4.14) has the bracket that is "
+    "missing here after 2 cos(T/2): read as it stands, 1 is not multiplied by z",
+    lambda: Equation(
+        (-z0 + 2 * sp.cos(T / 2) * zm + (1 - 2 * sp.cos(T / 2) * zT)) / (4 * SINE), derived_estimate(2), STATED
+    ),
+    "4.16.y6* | The estimate of y6 with the bracket closed before the measurement.",
+    lambda: Equation(PRINTED_DRIFT, derived_estimate(2), STATED),
+    "4.14.y2.bias | What the slip costs: a velocity error y1 enters the printed estimate of y2 with this factor.",
     lambda: Equation((sp.sin(T / 2) - 1) / (2 * sp.sin(T / 2) ** 2), bias_of_printed_tilt(0), STATED),
 )
 

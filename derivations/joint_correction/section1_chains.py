@@ -2,7 +2,7 @@
 
 import sympy as sp
 
-from navsym.claims import PROVED, Bound, Equation, Finding, claim, fact, state
+from navsym.claims import PROVED, Bound, Equation, Finding, claim, claims, fact, state
 from navsym.language.expression import to_text
 from navsym.models.linear import LinearModel
 from navsym.observability.chains import numerators
@@ -12,10 +12,11 @@ from navsym.observability.splits import companion
 from navsym_papers.joint_correction import section1_systems
 from navsym_papers.joint_correction.matrices import exact_inverse, unit_row, write_matrix
 
+s = sp.Symbol("s", positive=True)
 
-@claim("1.dimensions")
+
+@claim("1.dimensions | m <= n, l <= n and m + l >= n for an observable pair.")
 def dimensions():
-    """m <= n, l <= n and m + l >= n for an observable pair."""
     found = all(
         first.dimension <= s.n and second.dimension <= s.n and first.dimension + second.dimension >= s.n
         for s in (*section1_systems.systems(), section1_systems.direct_sum())
@@ -30,9 +31,8 @@ def dimensions():
     return section1_systems.say_ranks(True, Finding(found, "exact dimensions of the chains", PROVED), ranks, *relations)
 
 
-@claim("1.3.basis")
+@claim("1.3.basis | The first m vectors a_1 ... a_m are a basis of what sigma_1 observes.")
 def chain_is_a_basis():
-    """The first m vectors a_1 ... a_m are a basis of what sigma_1 observes."""
     counts = tuple(rank_of(s.chain(1, s.m)) for s in section1_systems.systems())
     longer = tuple(rank_of(s.chain(1, 2 * s.n)) for s in section1_systems.systems())
     value = counts if counts == longer else None
@@ -55,21 +55,21 @@ def characteristic(matrix: sp.MatrixBase) -> list[sp.Expr]:
     return values[::-1]
 
 
-@claim("1.4.theta")
-def next_vector_depends():
-    """a_{m+1} is the combination of a_1 ... a_m with the coefficients theta of Cayley and Hamilton."""
-    for s in section1_systems.systems():
-        theta = characteristic(s.block)
-        yield sp.Matrix([theta]) * s.chain(1, s.m), s.chain(1, s.m + 1)[s.m, :]
-
-
 def theta_of(s: section1_systems.System) -> tuple[sp.Expr, ...]:
     return s.found.measurements[0].companion
 
 
-@claim("1.5.Theta")
+CLAIMS_1_4 = claims(
+    "1.4.theta | a_{m+1} is the combination of a_1 ... a_m with the coefficients theta of Cayley and Hamilton.",
+    lambda: (
+        (sp.Matrix([characteristic(s.block)]) * s.chain(1, s.m), s.chain(1, s.m + 1)[s.m, :])
+        for s in section1_systems.systems()
+    ),
+)
+
+
+@claim("1.5.Theta | Theta has ones above the diagonal and theta_1 ... theta_m in its last row.")
 def companion_matrix():
-    """Theta has ones above the diagonal and theta_1 ... theta_m in its last row."""
     s = section1_systems.systems()[3]
     t1, t2, t3 = theta_of(s)
     A = s.chain(1, 4)
@@ -140,9 +140,8 @@ def gain_determinant():
     return Equation([section1_systems.free("x", size).det() ** -2 for size in (1, 2, 3)], values)
 
 
-@claim("1.6.initial")
+@claim("1.6.initial | With x°(t_0) = C_1 (sigma_10 0 ... 0)^T the first innovation is zero.")
 def initial_estimate():
-    """With x°(t_0) = C_1 (sigma_10 0 ... 0)^T the first innovation is zero."""
     first = sp.Symbol("sigma_10", real=True)
     values = []
     for size in (1, 2, 3):
@@ -152,13 +151,10 @@ def initial_estimate():
     return Equation([first] * 3, values)
 
 
-@claim("1.6.kalman_unique")
+@claim("1.6.kalman_unique | m = 1: with process noise the steady Riccati equation has one nonnegative solution.")
 def steady_kalman_gain():
-    """m = 1: with process noise the steady Riccati equation has one nonnegative solution.
-
-    2 a P + Q - P^2/R = -(P - P_1)(P - P_2)/R with real roots P_1, P_2, and P_1 P_2 = -Q R < 0. (For Q = 0 and a > 0
-    both roots 0 and 2 a R are nonnegative: the gain is then unique only with an initial covariance.)
-    """
+    # 2 a P + Q - P^2/R = -(P - P_1)(P - P_2)/R with real roots P_1, P_2, and P_1 P_2 = -Q R < 0. (For Q = 0 and a > 0
+    # both roots 0 and 2 a R are nonnegative: the gain is then unique only with an initial covariance.)
     a, P = sp.symbols("a P", real=True)
     Q, R = sp.symbols("Q R", positive=True)
     root = sp.sqrt(a**2 * R**2 + Q * R)
@@ -179,20 +175,17 @@ def difference_of_two_steady_solutions():
     return Equation((d1 - d2) ** 2 + (t1 + t2) * (t1 * d2 + t2 * d1), both.det(method="berkowitz"))
 
 
-@claim("1.two_stage.small")
-def errors_can_be_made_small():
-    """m = 2, Theta = 0: at a fixed instant the error transition vanishes as both poles -lam go to the left.
-
-    Its entries are exp(-s) times 1 + s, s/lam, lam s, 1 - s with s = lam t;
-    the largest for lam > 1 is lam s = s^2/t, and s^2 exp(-s) <= 24/s^2.
-    """
-    s = sp.Symbol("s", positive=True)
-    return Bound(s**2 * sp.exp(-s), "<=", 24 / s**2, {s: (0, None)})
+CLAIMS_1 = claims(
+    # Its entries are exp(-s) times 1 + s, s/lam, lam s, 1 - s with s = lam t; the largest for lam > 1 is lam s =
+    # s^2/t, and s^2 exp(-s) <= 24/s^2.
+    "1.two_stage.small | m = 2, Theta = 0: at a fixed instant the error transition vanishes as both poles -lam go "
+    "to the left.",
+    lambda: Bound(s**2 * sp.exp(-s), "<=", 24 / s**2, {s: (0, None)}),
+)
 
 
-@claim("1.two_stage.transition")
+@claim("1.two_stage.transition | The error transition matrix behind that bound solves its differential equation.")
 def error_transition():
-    """The error transition matrix behind that bound solves its differential equation."""
     lam, t = sp.symbols("lam t", positive=True)
     error = companion([0, 0]) - sp.Matrix([2 * lam, lam**2]) * unit_row(2)
     transition = sp.exp(-lam * t) * sp.Matrix([[1 - lam * t, t], [-(lam**2) * t, 1 + lam * t]])

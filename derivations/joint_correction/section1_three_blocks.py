@@ -4,18 +4,10 @@ import sympy as sp
 
 from navsym.claims import PROVED, Equation, Finding, claim
 from navsym.observability.splits import companion, last_row
+from navsym_papers.joint_correction import section1_systems
 from navsym_papers.joint_correction.matrices import corner, exact_inverse, shift, to_lowest_terms, unit_row
 from navsym_papers.joint_correction.section1_chains import coefficients, theta_of
-from navsym_papers.joint_correction.section1_systems import (
-    System,
-    flat,
-    free,
-    k,
-    overlapping,
-    polynomial_of,
-    say_ranks,
-    seen_at_once,
-)
+from navsym_papers.joint_correction.section1_systems import System, flat, free, k, overlapping, polynomial_of
 
 #: Splits i, j of the overlapping system (n = 4, m = 3) that have all three parts.
 CASES = ((2, 2), (1, 3))
@@ -36,9 +28,8 @@ def delta_of(s: System, i: int, j: int) -> list[sp.Expr]:
     return coefficients(basis, s.chain(2, j + 1)[j, :])
 
 
-@claim("1.14.matrices")
+@claim("1.14.matrices | F, F°, Theta_u, Theta_v, D_u, D_w as printed, solved from the chains (i = 2, j = 2, m = 3).")
 def constant_matrices():
-    """F, F°, Theta_u, Theta_v, D_u, D_w as printed, solved from the chains (i = 2, j = 2, m = 3)."""
     s = overlapping()
     t1, t2, t3 = theta_of(s)
     d1, d2, d3, d4 = delta_of(s, 2, 2)
@@ -49,9 +40,8 @@ def constant_matrices():
     return Equation([sp.sympify(x) for row in printed for x in row], [x for row in [*first, *second] for x in row])
 
 
-@claim("1.14.delta")
+@claim("1.14.delta | b_{j+1} in the basis a_1 ... a_i, b_1 ... b_j has the coefficients delta, here by Cramer's rule.")
 def delta_relation():
-    """b_{j+1} in the basis a_1 ... a_i, b_1 ... b_j has the coefficients delta, here by Cramer's rule."""
     for i, j in CASES:
         s = overlapping()
         basis = sp.Matrix.vstack(s.chain(1, i), s.chain(2, j))
@@ -79,9 +69,8 @@ def outputs():
         )
 
 
-@claim("1.14.dimension")
+@claim("1.14.dimension | The system (1.14) has m + j variables, m - i more than xi.")
 def dimension():
-    """The system (1.14) has m + j variables, m - i more than xi."""
     i, j, m, n = (sp.Symbol(name, integer=True, positive=True) for name in "ijmn")
     counted = [parts(*case) for case in CASES]
     sizes = [sum(rows[name].rows for name in "uvw") - s.n for s, _, rows in counted]
@@ -166,7 +155,7 @@ def choice_of_i():
     basis = sp.Matrix.vstack(overlapping().chain(1, 2), overlapping().chain(2, 2))
     finding = Finding((best.i, best.j), method, PROVED, scope="l = 4")
     larger = [(f"2 + abs({i} - 2)", ">", "2") for i in (0, 1, 3)]  # of i and 4 - i
-    return say_ranks((2, 2), finding, [(seen_at_once(basis), 4)], *larger)
+    return section1_systems.say_ranks((2, 2), finding, [(section1_systems.seen_at_once(basis), 4)], *larger)
 
 
 @claim("1.14.gains_unique")

@@ -5,32 +5,20 @@ import sympy as sp
 from navsym.claims import PROVED, Equation, Finding, claim, fact, state
 from navsym.models.linear import LinearModel
 from navsym.observability.splits import companion, last_row
+from navsym_papers.joint_correction import section1_systems
 from navsym_papers.joint_correction.matrices import exact_inverse, unit_row, write_matrix
 from navsym_papers.joint_correction.section1_chains import characteristic, coefficients, rank_of, say_affine
-from navsym_papers.joint_correction.section1_systems import (
-    System,
-    coefficients_of_polynomial,
-    coordinates,
-    direct_sum,
-    free,
-    g,
-    k,
-    polynomial_of,
-    say_ranks,
-    seen_at_once,
-    systems,
-)
+from navsym_papers.joint_correction.section1_systems import coordinates, direct_sum, free, k, polynomial_of, systems
 
 
-def phi_of(s: System) -> list[sp.Expr]:
+def phi_of(s: section1_systems.System) -> list[sp.Expr]:
     """phi_1 ... phi_n: b_{n-m+1} in the basis a_1 ... a_m, b_1 ... b_{n-m}."""
     following = s.chain(2, s.rest + 1)[s.rest, :]
     return coefficients(sp.Matrix.vstack(s.chain(1, s.m), s.chain(2, s.rest)), following)
 
 
-@claim("1.7.count")
+@claim("1.7.count | n - m <= l: the second chain is long enough to complete the basis.")
 def enough_vectors():
-    """n - m <= l: the second chain is long enough to complete the basis."""
     found = tuple(s.found.measurements[1].dimension >= s.rest for s in (*systems(), direct_sum()))
     ranks, relations = [], []
     for s in (*systems(), direct_sum()):
@@ -38,33 +26,34 @@ def enough_vectors():
         ranks += [(LinearModel(s.G, None, s.model.H[i, :]), sizes[i]) for i in (0, 1)]
         relations.append((f"{s.n} - {sizes[0]}", "<=", str(sizes[1])))
     finding = Finding(found, "exact dimensions of the chains", PROVED)
-    return say_ranks((True,) * 5, finding, ranks, *relations)
+    return section1_systems.say_ranks((True,) * 5, finding, ranks, *relations)
 
 
-@claim("1.8.basis")
+@claim("1.8.basis | a_1 ... a_m, b_1 ... b_{n-m} is a basis whenever the pair is observable.")
 def chains_complete_each_other():
-    """a_1 ... a_m, b_1 ... b_{n-m} is a basis whenever the pair is observable.
-
-    Modulo the invariant span of the a's the b's are a chain b, M b, ... of some (k, k) matrix M,
-    k = n - m. By Cayley and Hamilton M^k b is a combination of the first k vectors, whatever M
-    and b are, so that a dependence among them would keep every later vector in the same span.
-    """
+    # Modulo the invariant span of the a's the b's are a chain b, M b, ... of some (k, k) matrix M, k = n - m. By
+    # Cayley and Hamilton M^k b is a combination of the first k vectors, whatever M and b are, so that a dependence
+    # among them would keep every later vector in the same span.
     identities, relations = [], []
     for size in (1, 2, 3):
-        M = sp.Matrix(size, size, lambda r, s, size=size: g[r * size + s])
+        M = sp.Matrix(size, size, lambda r, s, size=size: section1_systems.g[r * size + s])
         theta = characteristic(M)
         power = [M**j for j in range(size + 1)]
         total = sum((t * power[j] for j, t in enumerate(theta)), sp.zeros(size, size))
         identities += [sp.expand(x) == 0 for x in power[size] - total]
         written = " @ ".join([write_matrix(M)] * size)
-        relations.append((written, "=", write_matrix(total), {x.name: [None, None, []] for x in g[: size**2]}))
+        relations.append(
+            (written, "=", write_matrix(total), {x.name: [None, None, []] for x in section1_systems.g[: size**2]})
+        )
     chains = [sp.Matrix.vstack(s.chain(1, s.m), s.chain(2, s.rest)) for s in systems()]
     full = tuple(rank_of(rows) == rows.cols for rows in chains)
     method = "Cayley-Hamilton in the quotient by the first chain"
     finding = Finding(
         all(identities) and all(full), method, PROVED, scope="n - m = 1, 2, 3 with all entries symbolic, every m"
     )
-    return say_ranks(True, finding, [(seen_at_once(rows), rows.cols) for rows in chains], *relations)
+    return section1_systems.say_ranks(
+        True, finding, [(section1_systems.seen_at_once(rows), rows.cols) for rows in chains], *relations
+    )
 
 
 @claim("1.8.one_to_one")
@@ -76,32 +65,27 @@ def transformation_is_invertible():
 
 
 @claim(
-    "1.10.gz",
-    slip="undecidable",
-    reason="a transposed row (1 0 ... 0)^T cannot be multiplied by C_2^-1 unless n - m = 1; in (1.5) and after "
-    "(1.14) the same row stands without the transposition; by hand: for n - m = 2 a (2, 1) column stands before a "
-    "(2, 2) matrix",
+    "1.10.gz | g_z^T = (1 0 ... 0)^T C_2^-1, as printed: a column times a matrix. | undecidable: a transposed row (1 "
+    "0 ... 0)^T cannot be multiplied by C_2^-1 unless n - m = 1; in (1.5) and after (1.14) the same row stands "
+    "without the transposition; by hand: for n - m = 2 a (2, 1) column stands before a (2, 2) matrix"
 )
 def output_row_of_z_printed():
-    """g_z^T = (1 0 ... 0)^T C_2^-1, as printed: a column times a matrix."""
     size = 2
     columns, rows = unit_row(size).T.cols, free("z", size).rows
     meaning = [state(str(columns), "=", str(rows))]  # a product has a value only where these two counts agree
     return fact(True, columns == rows, "shapes of the factors", PROVED, scope="n - m = 2", meaning=meaning)
 
 
-@claim("1.10.gz*")
+@claim("1.10.gz* | g_z^T = (1 0 ... 0) C_2^-1.")
 def output_row_of_z():
-    """g_z^T = (1 0 ... 0) C_2^-1."""
     for s in systems():
         C2 = free("z", s.rest)
         _, back = coordinates(s, free("x", s.m), C2)
         yield unit_row(s.rest) * exact_inverse("C2", C2), (s.h(2).T * back)[:, s.m :]
 
 
-@claim("1.10.Phi")
+@claim("1.10.Phi | Phi_x has phi_1 ... phi_m in its last row and zeros above; Phi_z is the companion of the rest.")
 def rows_of_phi():
-    """Phi_x has phi_1 ... phi_m in its last row and zeros above; Phi_z is the companion of the rest."""
     s = systems()[2]
     phi = phi_of(s)
     basis = sp.Matrix.vstack(s.chain(1, 2), s.chain(2, 2))
@@ -158,16 +142,15 @@ def closed_loop(b: dict[str, sp.Matrix]) -> sp.Matrix:
 PAIRS = ((1, 1), (2, 1), (1, 2), (2, 2), (3, 2))
 
 
-@claim("1.11.gain_unique")
+@claim("1.11.gain_unique | Prescribed roots of |pE - G_z2 + K_z g_z^T| determine K_z uniquely.")
 def second_gain_is_unique():
-    """Prescribed roots of |pE - G_z2 + K_z g_z^T| determine K_z uniquely."""
     found, meaning = True, list[dict]()
     for size in (1, 2, 3):
         phi = sp.symbols(f"phi1:{size + 1}", real=True)
         C2 = free("z", size)
         G = C2 * companion(phi) * exact_inverse("C2", C2)
         K = sp.Matrix(k[:size])
-        values = coefficients_of_polynomial(G - K * unit_row(size) * exact_inverse("C2", C2))[1:]
+        values = section1_systems.coefficients_of_polynomial(G - K * unit_row(size) * exact_inverse("C2", C2))[1:]
         jacobian = sp.Matrix(values).jacobian(K)
         meaning += say_affine(values, K, C2.det())
         found = found and rank_of(jacobian) == size and not any(jacobian.has(symbol) for symbol in K)

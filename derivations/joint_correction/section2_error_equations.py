@@ -10,10 +10,13 @@ from functools import cache
 
 import sympy as sp
 
-from navsym.claims import CERTIFIED, PROVED, Bound, Equation, claim, fact, state
+from navsym.claims import CERTIFIED, PROVED, Bound, Equation, claim, claims, fact, state
 from navsym.language.expression import to_text
 from navsym_papers.joint_correction import kinematics
 from navsym_papers.joint_correction.inertial import PHYSICAL_ORDERS, monomial_order, say_orders, truncate
+
+mu = sp.Symbol("mu", positive=True)
+sine = sp.Symbol("s", real=True)
 
 a1, a2, a3 = kinematics.ALPHA
 b1, b2, b3 = kinematics.BETA
@@ -35,26 +38,21 @@ def kept(symbol: sp.Symbol) -> sp.Expr:
     return truncate(equations().rates[symbol], PHYSICAL_ORDERS, 2).kept
 
 
-errors_of_the_platform = claim(
-    "2.1",
-    "The rates of alpha_1, alpha_2, dp_1, dp_2 up to terms of order mu^2 rho.",
+CLAIMS_2_1 = claims(
+    "2.1 | The rates of alpha_1, alpha_2, dp_1, dp_2 up to terms of order mu^2 rho.",
     lambda: Equation(
         [p1 + v1, p2 + v2, -(w0**2) * (a1 + e2) - w2 * v3, -(w0**2) * (a2 - e1) + w1 * v3],
         [kept(symbol) for symbol in (a1, a2, p1, p2)],
     ),
-)
-dropped_terms = claim(
-    "2.1.dropped",
-    "(2.1) leaves out omega_x1 (omega_x1 alpha_1 + omega_x2 alpha_2) and its like, and nothing else.",
+    "2.1.dropped | (2.1) leaves out omega_x1 (omega_x1 alpha_1 + omega_x2 alpha_2) and its like, and nothing else.",
     lambda: Equation(
         [w1 * (w1 * a1 + w2 * a2), w2 * (w1 * a1 + w2 * a2)], [equations().rates[p] - kept(p) for p in (p1, p2)]
     ),
 )
 
 
-@claim("2.1.climb")
+@claim("2.1.climb | A climb below 0.1 a max|omega| adds only terms of order mu^2 rho to (2.1) and (2.4).")
 def climb_is_negligible():
-    """A climb below 0.1 a max|omega| adds only terms of order mu^2 rho to (2.1) and (2.4)."""
     climbing = kinematics.error_equations(kinematics.CLIMB)
     values = [climbing.rates[p] - equations().rates[p] for p in (p1, p2)]
     values += [c - e for c, e in zip(climbing.velocity, equations().velocity, strict=True)]
@@ -75,36 +73,6 @@ def height_is_negligible():
     return Bound(1 - (1 + x) ** -3, "<", sp.Rational(1, 50), {x: (0, eccentricity)})
 
 
-drift_1 = claim(
-    "2.2.beta1", "beta_1' = -omega_x2 beta_3 + nu_x1.", lambda: Equation(-w2 * b3 + v1, equations().rates[b1])
-)
-drift_2 = claim(
-    "2.2.beta2", "beta_2' = omega_x1 beta_3 + nu_x2.", lambda: Equation(w1 * b3 + v2, equations().rates[b2])
-)
-drift_3_printed = claim(
-    "2.2.beta3",
-    "beta_3' = omega_x2 beta_1 - omega_x2 beta_2 + nu_x3, as printed.",
-    lambda: Equation(w2 * b1 - w2 * b2 + v3, equations().rates[b3]),
-    slip="undecidable",
-    reason="index 2 for 1 in the second term: beta x omega has -omega_x1 beta_2, and the paper's own (2.8) for x_3 "
-    "follows only with omega_x1; by hand: omega_x1 = beta_2 = 1, all others 0: the platform turns at -1, the print "
-    "has 0",
-)
-drift_3 = claim(
-    "2.2.beta3*",
-    "beta_3' = omega_x2 beta_1 - omega_x1 beta_2 + nu_x3.",
-    lambda: Equation(w2 * b1 - w1 * b2 + v3, equations().rates[b3]),
-)
-position_errors = claim(
-    "2.3",
-    "gamma = alpha - beta is the turn from Mx to Mu: Poisson's equation gives the derivatives of gamma_1, gamma_2.",
-    lambda: Equation(
-        [equations().rates[a] - equations().rates[b] for a, b in ((a1, b1), (a2, b2))],
-        list(turn_of_the_computed_frame()[:2]),
-    ),
-)
-
-
 def turn_of_the_computed_frame() -> sp.Matrix:
     """gamma' for a frame that turns with the computed rate, with gamma = alpha - beta put in."""
     from navsym_papers.joint_correction.kinematics import horizontal, rotation_rate
@@ -114,16 +82,6 @@ def turn_of_the_computed_frame() -> sp.Matrix:
     return rotation_rate(gamma, computed, kinematics.OMEGA_X).subs(
         dict(zip(gamma, kinematics.ALPHA - kinematics.BETA, strict=True))
     )
-
-
-velocity_information = claim(
-    "2.4",
-    "The velocity correction sigma_x1^c, sigma_x2^c.",
-    lambda: Equation(
-        [p1 + u3 * a2 + u2 * b3 - u3 * b2 + kinematics.W_C[0], p2 - u3 * a1 + u3 * b1 - u1 * b3 + kinematics.W_C[1]],
-        equations().velocity,
-    ),
-)
 
 
 # Assumptions of the section, with numbers
@@ -155,35 +113,6 @@ def say_units(left: sp.Expr, right: sp.Expr) -> tuple[dict]:
     return (state(sides[0], "=", sides[1], symbols | {"k": ["1", None, ["open-low"]]}),)
 
 
-# Both sides have one unit.
-stationarity_units_printed = claim(
-    "2.assumption1.units",
-    "(omega_x1^2 + omega_x2^2)^(1/2) < max(omega_x1^2 + omega_x2^2), as printed.",
-    lambda: fact(
-        degree(RATE**2),
-        degree(RATE),
-        "powers of 1/s on the right and on the left side",
-        PROVED,
-        meaning=say_units(RATE, RATE**2),
-    ),
-    slip="scan",
-    reason="a rate (1/s) is compared with a squared rate (1/s^2); the dot of the derivative over the root is lost, "
-    "as are the dots in (2.9) and (3.3); by hand: in minutes the left side is 60 times larger, the right one 3600 "
-    "times",
-)
-stationarity_units = claim(
-    "2.assumption1.units*",
-    "|d/dt (omega_x1^2 + omega_x2^2)^(1/2)| < max(omega_x1^2 + omega_x2^2): both sides in 1/s^2.",
-    lambda: fact(
-        degree(RATE**2),
-        degree(TURN),
-        "powers of 1/s on the right and on the left side",
-        PROVED,
-        meaning=say_units(TURN, RATE**2),
-    ),
-)
-
-
 def squared_rate(speed: sp.Expr, course: sp.Expr, place: sp.Expr) -> sp.Expr:
     """omega^2 of :func:`stationarity`."""
     return speed**2 + 2 * speed * course + course**2 + (1 - course**2) * place
@@ -199,6 +128,51 @@ def stationarity(speed: sp.Expr, course: sp.Expr, place: sp.Expr) -> tuple[sp.Ex
     largest = squared_rate(speed, course, sp.S.One)
     left = (1 - course**2) ** 2 * place * (1 - place) * speed**2
     return left, largest**2 * squared_rate(speed, course, place)
+
+
+CLAIMS_2_2 = claims(
+    "2.2.beta1 | beta_1' = -omega_x2 beta_3 + nu_x1.",
+    lambda: Equation(-w2 * b3 + v1, equations().rates[b1]),
+    "2.2.beta2 | beta_2' = omega_x1 beta_3 + nu_x2.",
+    lambda: Equation(w1 * b3 + v2, equations().rates[b2]),
+    "2.2.beta3 | beta_3' = omega_x2 beta_1 - omega_x2 beta_2 + nu_x3, as printed. | undecidable: index 2 for 1 in "
+    "the second term: beta x omega has -omega_x1 beta_2, and the paper's own (2.8) for x_3 follows only with "
+    "omega_x1; by hand: omega_x1 = beta_2 = 1, all others 0: the platform turns at -1, the print has 0",
+    lambda: Equation(w2 * b1 - w2 * b2 + v3, equations().rates[b3]),
+    "2.2.beta3* | beta_3' = omega_x2 beta_1 - omega_x1 beta_2 + nu_x3.",
+    lambda: Equation(w2 * b1 - w1 * b2 + v3, equations().rates[b3]),
+    "2.3 | gamma = alpha - beta is the turn from Mx to Mu: Poisson's equation gives the derivatives of gamma_1, "
+    "gamma_2.",
+    lambda: Equation(
+        [equations().rates[a] - equations().rates[b] for a, b in ((a1, b1), (a2, b2))],
+        list(turn_of_the_computed_frame()[:2]),
+    ),
+    "2.4 | The velocity correction sigma_x1^c, sigma_x2^c.",
+    lambda: Equation(
+        [p1 + u3 * a2 + u2 * b3 - u3 * b2 + kinematics.W_C[0], p2 - u3 * a1 + u3 * b1 - u1 * b3 + kinematics.W_C[1]],
+        equations().velocity,
+    ),
+    # Both sides have one unit.
+    "2.assumption1.units | (omega_x1^2 + omega_x2^2)^(1/2) < max(omega_x1^2 + omega_x2^2), as printed. | scan: a "
+    "rate (1/s) is compared with a squared rate (1/s^2); the dot of the derivative over the root is lost, as are "
+    "the dots in (2.9) and (3.3); by hand: in minutes the left side is 60 times larger, the right one 3600 times",
+    lambda: fact(
+        degree(RATE**2),
+        degree(RATE),
+        "powers of 1/s on the right and on the left side",
+        PROVED,
+        meaning=say_units(RATE, RATE**2),
+    ),
+    "2.assumption1.units* | |d/dt (omega_x1^2 + omega_x2^2)^(1/2)| < max(omega_x1^2 + omega_x2^2): both sides in "
+    "1/s^2.",
+    lambda: fact(
+        degree(RATE**2),
+        degree(TURN),
+        "powers of 1/s on the right and on the left side",
+        PROVED,
+        meaning=say_units(TURN, RATE**2),
+    ),
+)
 
 
 @claim("2.assumption1.orthodrome", expect=CERTIFIED)
@@ -234,9 +208,8 @@ def great_circles_are_not_always_much_below():
     return Equation(sp.Rational(637, 1000), sp.sqrt(left / right), tolerance=sp.Rational(1, 2000))
 
 
-@claim("2.scale.mu", expect=CERTIFIED)
+@claim("2.scale.mu | mu <= 0.1 for every latitude and heading up to 250 m/s. | CERTIFIED")
 def mu_is_small():
-    """mu <= 0.1 for every latitude and heading up to 250 m/s."""
     v, sine, cosine = sp.symbols("v s c", real=True)
     square = v**2 / EARTH_RADIUS**2 + 2 * v * sine * EARTH_RATE * cosine / EARTH_RADIUS + EARTH_RATE**2 * cosine**2
     return Bound(
@@ -244,35 +217,22 @@ def mu_is_small():
     )
 
 
-correction_time_low = claim(
-    "2.scale.tau_low",
-    "Thirty minutes are more than one in dimensionless time.",
+CLAIMS_2 = claims(
+    "2.scale.tau_low | Thirty minutes are more than one in dimensionless time.",
     lambda: Bound(sp.Integer(1), "<", 1800 * SCHULER_RATE),
-)
-correction_time_high = claim(
-    "2.scale.tau_high",
-    "Thirty minutes are less than three in dimensionless time.",
+    "2.scale.tau_high | Thirty minutes are less than three in dimensionless time.",
     lambda: Bound(sp.Integer(3), ">", 1800 * SCHULER_RATE),
+    "2.scale.period | tau_h <= 3 is at most a twentieth of the period 2 pi/mu of the motion, for mu from 0.001 to "
+    "0.1. | CERTIFIED",
+    lambda: Bound(sp.Integer(60), "<", 2 * sp.pi / mu, {mu: (sp.Rational(1, 1000), sp.Rational(1, 10))}),
+    "2.scale.earth | u = Omega/(mu omega_0), mu the largest rate over all headings, is in (1/2, 1) at 45 degrees "
+    "and 250 m/s.",
+    lambda: Bound(
+        (EARTH_RATE / (EARTH_RATE * sp.sqrt(2) / 2 + sp.Rational(250, EARTH_RADIUS)) - sp.Rational(1, 2))
+        * (1 - EARTH_RATE / (EARTH_RATE * sp.sqrt(2) / 2 + sp.Rational(250, EARTH_RADIUS))),
+        ">",
+        0,
+    ),
+    "2.scale.mu_u3 | |mu u_3| = Omega |sin(latitude)|/omega_0 is at most 0.06, far from 1, where (2.8) breaks.",
+    lambda: Bound(sine**2 * EARTH_RATE**2 * EARTH_RADIUS / GRAVITY, "<=", sp.Rational(6, 100) ** 2, {sine: (-1, 1)}),
 )
-
-
-@claim("2.scale.period", expect=CERTIFIED)
-def correction_is_short():
-    """tau_h <= 3 is at most a twentieth of the period 2 pi/mu of the motion, for mu from 0.001 to 0.1."""
-    mu = sp.Symbol("mu", positive=True)
-    return Bound(sp.Integer(60), "<", 2 * sp.pi / mu, {mu: (sp.Rational(1, 1000), sp.Rational(1, 10))})
-
-
-@claim("2.scale.earth")
-def earth_rate_is_of_order_one():
-    """u = Omega/(mu omega_0), mu the largest rate over all headings, is in (1/2, 1) at 45 degrees and 250 m/s."""
-    largest = EARTH_RATE * sp.sqrt(2) / 2 + sp.Rational(250, EARTH_RADIUS)
-    value = EARTH_RATE / largest
-    return Bound((value - sp.Rational(1, 2)) * (1 - value), ">", 0)
-
-
-@claim("2.scale.mu_u3")
-def coupling_is_small():
-    """|mu u_3| = Omega |sin(latitude)|/omega_0 is at most 0.06, far from 1, where (2.8) breaks."""
-    sine = sp.Symbol("s", real=True)
-    return Bound(sine**2 * EARTH_RATE**2 * EARTH_RADIUS / GRAVITY, "<=", sp.Rational(6, 100) ** 2, {sine: (-1, 1)})

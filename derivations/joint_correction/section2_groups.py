@@ -11,57 +11,37 @@ from itertools import pairwise
 
 import sympy as sp
 
-from navsym.claims import PROVED, Claim, Equation, Finding, Property, claim, fact, state
+from navsym.claims import PROVED, Claim, Equation, Finding, Property, claim, claims, fact, state
 from navsym.language.expression import to_text
 from navsym.observability.chains import observe_jointly
 from navsym.observability.rank_drops import find_drops
-from navsym_papers.joint_correction.inertial import (
-    EARTH,
-    FULL,
-    MU,
-    NU,
-    OMEGA,
-    OMEGA_RATE,
-    ORDERS,
-    PI,
-    W_C0,
-    W_M0,
-    Group,
-    X,
-    Y,
-    dimensionless,
-    full_model,
-    lowest_order,
-    position_group,
-    say_orders,
-    truncate,
-    velocity_group,
-)
+from navsym_papers.joint_correction import inertial
+from navsym_papers.joint_correction.inertial import ORDERS, W_C0, W_M0, Group, lowest_order, say_orders, truncate
 from navsym_papers.joint_correction.kinematics import ALPHA, BETA, EPSILON
 from navsym_papers.joint_correction.matrices import write_matrix
 from navsym_papers.joint_correction.section1_systems import say_ranks
 
-mu = MU
+mu = inertial.MU
 a1, a2 = ALPHA[:2]
 b1, b2, b3 = BETA
-pi1, pi2 = PI
-v1, v2, v3 = NU
+pi1, pi2 = inertial.PI
+v1, v2, v3 = inertial.NU
 e1, e2 = EPSILON
-w1, w2 = OMEGA[:2]
-dw1, dw2 = OMEGA_RATE[:2]
-u1, u2, u3 = EARTH
-x1, x2, x3, x4, x5, x6 = X
-y1, y2, y3, y4, y5, y6, y7, y8 = Y
+w1, w2 = inertial.OMEGA[:2]
+dw1, dw2 = inertial.OMEGA_RATE[:2]
+u1, u2, u3 = inertial.EARTH
+x1, x2, x3, x4, x5, x6 = inertial.X
+y1, y2, y3, y4, y5, y6, y7, y8 = inertial.Y
 
 
 @cache
 def velocity() -> Group:
-    return velocity_group()
+    return inertial.velocity_group()
 
 
 @cache
 def position() -> Group:
-    return position_group()
+    return inertial.position_group()
 
 
 def up_to_order(side: sp.Expr) -> sp.Expr:
@@ -174,7 +154,9 @@ derivatives_y = tuple(
         f"2.9.y{k}",
         f"Derivative of y_{k}: y_{k + 1} as (2.7) prints it is the rate of alpha_{axis} - beta_{axis}.",
         POSITION_MEANING[k],
-        lambda angle=angle, turn=turn: sp.expand(dimensionless().rates[angle] - dimensionless().rates[turn]),
+        lambda angle=angle, turn=turn: sp.expand(
+            inertial.dimensionless().rates[angle] - inertial.dimensionless().rates[turn]
+        ),
     )
     for k, axis, angle, turn in ((1, 1, a1, b1), (5, 2, a2, b2))
 )
@@ -255,11 +237,6 @@ inhomogeneous_term_as_printed = claim(
     slip="scan",
     reason=DOT,
 )
-inhomogeneous_term = claim(
-    "2.9.inhomogeneous_printed*",
-    "With the derivative of omega the inhomogeneous term of y_2 has the order mu (times rho).",
-    lambda: order_one(position().linear()[2][1]),
-)
 
 
 def rank_and_drops(group: Group) -> tuple[int, tuple[str, ...]]:
@@ -297,44 +274,6 @@ def say_observable(group: Group, rank: int, unseen: tuple[sp.Expr, ...]) -> list
     return said
 
 
-velocity_group_is_observable = claim(
-    "2.8.observable",
-    "x_1 ... x_6 are observable by velocity information, except where mu u_3 = 1 or -1.",
-    lambda: fact(
-        (6, ("mu*u_3 + 1 = 0", "mu*u_3 - 1 = 0")),
-        rank_and_drops(velocity()),
-        "fraction-free rank, all split determinants",
-        PROVED,
-        scope="homogeneous part of (2.8)",
-        meaning=say_observable(velocity(), 6, (sp.Integer(-1), sp.Integer(1))),
-    ),
-)
-position_group_is_observable = claim(
-    "2.9.observable",
-    "y_1 ... y_8 are observable by position information, for all mu, omega_1, omega_2.",
-    lambda: fact(
-        (8, ()),
-        rank_and_drops(position()),
-        "fraction-free rank, a split determinant that is a number",
-        PROVED,
-        scope="homogeneous part of (2.9)",
-        meaning=say_observable(position(), 8, ()),
-    ),
-)
-# mu -> 0 in the motion, mu beta is kept; u_1, u_2, u_3 are arbitrary.
-velocity_observes_six_combinations = claim(
-    "2.6.span",
-    "Velocity information observes exactly six combinations at leading order.",
-    lambda: leading_rank((0, 1), 6, "mu = 0 in the motion, mu beta of order rho; u_1, u_2, u_3 arbitrary"),
-)
-# mu -> 0 in the motion, the drift mu beta_3 is kept.
-position_observes_eight_combinations = claim(
-    "2.7.span",
-    "Position information observes exactly eight combinations at leading order.",
-    lambda: leading_rank((2, 3), 8, "mu = 0 in the motion, mu beta of order rho; omega_1, omega_2 arbitrary"),
-)
-
-
 def leading_rank(measurements: tuple[int, ...], printed: int, scope: str) -> Property:
     """Rank of the chains of the 16-state model when mu -> 0 with B = mu beta_3 kept of order one.
 
@@ -343,8 +282,8 @@ def leading_rank(measurements: tuple[int, ...], printed: int, scope: str) -> Pro
     """
     from navsym.models.linear import LinearModel
 
-    model = full_model()
-    place = {symbol: k for k, symbol in enumerate(FULL)}
+    model = inertial.full_model()
+    place = {symbol: k for k, symbol in enumerate(inertial.FULL)}
     scale = sp.eye(16)
     velocity_only = measurements == (0, 1)
     for symbol in BETA if velocity_only else BETA[2:]:
@@ -355,3 +294,34 @@ def leading_rank(measurements: tuple[int, ...], printed: int, scope: str) -> Pro
     rank = observe_jointly(leading).joint_dimension
     finding = Finding(rank, "exact rank of the leading-order model", PROVED, scope=scope)
     return say_ranks(printed, finding, [(leading, printed)])
+
+
+CLAIMS = claims(
+    "2.9.inhomogeneous_printed* | With the derivative of omega the inhomogeneous term of y_2 has the order mu "
+    "(times rho).",
+    lambda: order_one(position().linear()[2][1]),
+    "2.8.observable | x_1 ... x_6 are observable by velocity information, except where mu u_3 = 1 or -1.",
+    lambda: fact(
+        (6, ("mu*u_3 + 1 = 0", "mu*u_3 - 1 = 0")),
+        rank_and_drops(velocity()),
+        "fraction-free rank, all split determinants",
+        PROVED,
+        scope="homogeneous part of (2.8)",
+        meaning=say_observable(velocity(), 6, (sp.Integer(-1), sp.Integer(1))),
+    ),
+    "2.9.observable | y_1 ... y_8 are observable by position information, for all mu, omega_1, omega_2.",
+    lambda: fact(
+        (8, ()),
+        rank_and_drops(position()),
+        "fraction-free rank, a split determinant that is a number",
+        PROVED,
+        scope="homogeneous part of (2.9)",
+        meaning=say_observable(position(), 8, ()),
+    ),
+    # mu -> 0 in the motion, mu beta is kept; u_1, u_2, u_3 are arbitrary.
+    "2.6.span | Velocity information observes exactly six combinations at leading order.",
+    lambda: leading_rank((0, 1), 6, "mu = 0 in the motion, mu beta of order rho; u_1, u_2, u_3 arbitrary"),
+    # mu -> 0 in the motion, the drift mu beta_3 is kept.
+    "2.7.span | Position information observes exactly eight combinations at leading order.",
+    lambda: leading_rank((2, 3), 8, "mu = 0 in the motion, mu beta of order rho; omega_1, omega_2 arbitrary"),
+)

@@ -10,7 +10,7 @@ from functools import cache
 
 import sympy as sp
 
-from navsym.claims import CERTIFIED, Equation, claim
+from navsym.claims import CERTIFIED, Equation, claim, claims
 from navsym.prove.identities import vanishes_identically
 
 T, u = sp.symbols("T u", positive=True)
@@ -61,65 +61,48 @@ def measurement_before_the_end():
         yield [*(-values.diff(u)), *values.subs(u, 0)], [*(values * F), *H.subs(mu, 0)[0, :size]]
 
 
-velocity_accuracy_on_a_short_interval = claim(
-    "2.8.accuracy_short",
-    "tau_h = 1: the standard deviation of x_2 is 24.0 roots of the noise intensity.",
+CLAIMS_2_8 = claims(
+    "2.8.accuracy_short | tau_h = 1: the standard deviation of x_2 is 24.0 roots of the noise intensity. | CERTIFIED",
     lambda: Equation(sp.Integer(24), sp.sqrt(variance(VELOCITY, 1, sp.Integer(1))), tolerance=sp.Rational(1, 20)),
-    expect=CERTIFIED,
-)
-velocity_accuracy_on_a_long_interval = claim(
-    "2.8.accuracy_long",
-    "tau_h = 3: the standard deviation of x_2 is 28 times smaller than for tau_h = 1.",
+    "2.8.accuracy_long | tau_h = 3: the standard deviation of x_2 is 28 times smaller than for tau_h = 1. | CERTIFIED",
     lambda: Equation(
         sp.Integer(28),
         sp.sqrt(variance(VELOCITY, 1, sp.Integer(1)) / variance(VELOCITY, 1, sp.Integer(3))),
         tolerance=sp.Rational(1, 2),
     ),
-    expect=CERTIFIED,
 )
 
 
-@claim("3.preestimation.variance")
+@claim("3.preestimation.variance | With y_3, y_4 known the variances of y_1 and y_2 are 4/T and 12/T^3.")
 def pre_estimated_variance():
-    """With y_3, y_4 known the variances of y_1 and y_2 are 4/T and 12/T^3."""
     matrix = information(PRE_ESTIMATED)
     determinant = matrix.det(method="berkowitz")
     return Equation([4 / T, 12 / T**3], [matrix[1, 1] / determinant, matrix[0, 0] / determinant])
 
 
-preestimation_helps_on_a_short_interval = claim(
-    "3.preestimation.helps_short",
-    "tau_h = 1: with the Schuler variables known y_2 has a 9.88 times smaller standard deviation.",
+CLAIMS_3 = claims(
+    "3.preestimation.helps_short | tau_h = 1: with the Schuler variables known y_2 has a 9.88 times smaller "
+    "standard deviation. | CERTIFIED",
     lambda: Equation(sp.Rational(988, 100), ratio(1), tolerance=sp.Rational(1, 200)),
-    expect=CERTIFIED,
-)
-preestimation_helps_on_a_long_interval = claim(
-    "3.preestimation.helps_long",
-    "tau_h = 3: with the Schuler variables known y_2 has an 8.9 times smaller standard deviation.",
+    "3.preestimation.helps_long | tau_h = 3: with the Schuler variables known y_2 has an 8.9 times smaller "
+    "standard deviation. | CERTIFIED",
     lambda: Equation(sp.Rational(89, 10), ratio(3), tolerance=sp.Rational(1, 20)),
-    expect=CERTIFIED,
-)
-# At tau_h = 1 they are 13.5, 24.0, 26.2: acceptable at the upper end of the range of tau_h, not at the lower.
-velocity_variables_are_well_observable = claim(
-    "2.8.accuracy_all",
-    "tau_h = 3: standard deviations 2.02, 0.85, 1.47 of x_1, x_2, x_3, in roots of the noise intensity.",
+    # At tau_h = 1 they are 13.5, 24.0, 26.2: acceptable at the upper end of the range of tau_h, not at the lower.
+    "2.8.accuracy_all | tau_h = 3: standard deviations 2.02, 0.85, 1.47 of x_1, x_2, x_3, in roots of the noise "
+    "intensity. | CERTIFIED",
     lambda: Equation(
         [sp.Rational(x, 100) for x in (202, 85, 147)],
         [sp.sqrt(variance(VELOCITY, place, sp.Integer(3))) for place in range(3)],
         tolerance=sp.Rational(1, 200),
     ),
-    expect=CERTIFIED,
-)
-# At tau_h = 1 they are 4.0, 34, 156, 283: the Schuler variables are the ones that need the time.
-position_variables_are_well_observable = claim(
-    "2.9.accuracy_all",
-    "tau_h = 3: standard deviations 2.22, 5.95, 7.68, 2.09 of y_1 ... y_4, in roots of the noise intensity.",
+    # At tau_h = 1 they are 4.0, 34, 156, 283: the Schuler variables are the ones that need the time.
+    "2.9.accuracy_all | tau_h = 3: standard deviations 2.22, 5.95, 7.68, 2.09 of y_1 ... y_4, in roots of the "
+    "noise intensity. | CERTIFIED",
     lambda: Equation(
         [sp.Rational(x, 100) for x in (222, 595, 768, 209)],
         [sp.sqrt(variance(POSITION, place, sp.Integer(3))) for place in range(4)],
         tolerance=sp.Rational(1, 200),
     ),
-    expect=CERTIFIED,
 )
 
 

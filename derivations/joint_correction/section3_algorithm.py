@@ -42,9 +42,8 @@ common = tuple(
 )
 
 
-@claim("3.1.overlap")
+@claim("3.1.overlap | The two groups have exactly four dimensions in common: those of (3.1).")
 def overlap():
-    """The two groups have exactly four dimensions in common: those of (3.1)."""
     first, second = functionals(velocity().meaning), functionals(position().meaning)
     from navsym_papers.joint_correction.section1_chains import rank_of
 
@@ -69,16 +68,14 @@ def remaining_variables():
     return say_ranks((6, 4), finding, [(first, 6), (model, 10)], ("4", "=", "10 - 6"))
 
 
-@claim("3.1.fast")
+@claim("3.1.fast | x_1, x_2 and x_4, x_5 move with the Schuler frequency; x_3 and x_6 stand still.")
 def dynamic_errors_oscillate():
-    """x_1, x_2 and x_4, x_5 move with the Schuler frequency; x_3 and x_6 stand still."""
     F, _, _ = velocity().linear()
     return Equation(p**2 * (p**2 + 1) ** 2, polynomial_of(F))
 
 
-@claim("3.1.slow")
+@claim("3.1.slow | The remaining y_1, y_2, y_5, y_6 are slow: frequencies 0, 0 and mu (omega_1^2 + omega_2^2)^(1/2).")
 def position_errors_are_slow():
-    """The remaining y_1, y_2, y_5, y_6 are slow: frequencies 0, 0 and mu (omega_1^2 + omega_2^2)^(1/2)."""
     F, _, _ = position().linear()
     slow = F.extract([0, 1, 4, 5], [0, 1, 4, 5])
     return Equation(p**2 * (p**2 + mu**2 * (w1**2 + w2**2)), polynomial_of(slow))
@@ -185,12 +182,9 @@ y6_row = row(
 )
 
 
-@claim("3.3.only_velocity")
+@claim("3.3.only_velocity | With the position gains zero on [t_0, t_1] position innovations enter nowhere.")
 def position_gains_are_zero():
-    """With the position gains zero on [t_0, t_1] position innovations enter nowhere.
-
-    The dash before K_1^h does not matter: -K = 0 and K = 0 are one condition.
-    """
+    # The dash before K_1^h does not matter: -K = 0 and K = 0 are one condition.
     zero = dict.fromkeys(Kh.values(), 0)
     derived = [sp.diff(position_row(k).subs(zero), s) for k in (1, 2, 5, 6) for s in (sm1, sm2)]
     derived += [sp.diff(observer_row(k), s) for k in range(6) for s in (sm1, sm2, *y.values())]

@@ -8,13 +8,15 @@ channels.
 import sympy as sp
 from flint import arb, ctx, fmpq, fmpq_poly
 
-from navsym.claims import CERTIFIED, PROVED, Equation, claim, fact, state
+from navsym.claims import PROVED, Equation, claims, fact, state
 from navsym_papers.joint_correction.inertial import EARTH, MU
 from navsym_papers.joint_correction.matrices import exact_inverse, to_lowest_terms
 from navsym_papers.joint_correction.section1_systems import coefficients_of_polynomial, p, polynomial_of
 from navsym_papers.joint_correction.section2_groups import mu, position, velocity, w1, w2
 from navsym_papers.joint_correction.section3_algorithm import joint_error_matrix
 from navsym_papers.trajectory.hurwitz import say_signs
+
+d = sp.Symbol("d", real=True)
 
 lam, lam_h = sp.symbols("lambda_c lambda_h", positive=True)
 kappa, omega = sp.symbols("kappa omega", real=True)
@@ -39,18 +41,7 @@ def position_block(gains: tuple[sp.Expr, sp.Expr], channel: int = 0) -> sp.Matri
     return F.extract(places, places) - sp.Matrix(gains) * H.extract([channel], places)
 
 
-velocity_gains = claim(
-    "3.2.gains",
-    "Gains 1 - 3 l^2, 3 l - l^3, l^3 with l = lambda_c give (p + lambda_c)^3 in both channels.",
-    lambda: Equation(
-        [(p + lam) ** 3] * 2, [polynomial_of(velocity_block(VELOCITY_GAINS, channel)) for channel in (0, 1)]
-    ),
-)
-
-
-@claim("3.2.gains_unique")
 def velocity_gains_are_unique():
-    """These gains are the only ones: the coefficients are affine in K with determinant 1 or -1."""
     K = sp.symbols("K1:4", real=True)
     values = sp.Matrix(coefficients_of_polynomial(velocity_block(K))[1:])
     slopes, wanted = values.jacobian(K), sp.Matrix([3 * lam, 3 * lam**2, lam**3])
@@ -58,23 +49,7 @@ def velocity_gains_are_unique():
     return Equation([sp.Integer(1), *[sp.Integer(0)] * 3], [slopes.det() ** 2, *rest.applyfunc(sp.expand)])
 
 
-# K_6^h has omega_1 in the place of omega_2.
-position_gains = claim(
-    "3.3.gains",
-    "K_1^h = 2 lambda_h and K_2^h = lambda_h^2 - mu^2 omega_2^2 give (p + lambda_h)^2 exactly.",
-    lambda: Equation(
-        [(p + lam_h) ** 2] * 2,
-        [
-            polynomial_of(position_block((2 * lam_h, lam_h**2 - mu**2 * w**2), channel))
-            for channel, w in ((0, w2), (1, w1))
-        ],
-    ),
-)
-
-
-@claim("3.3.gains_unique")
 def position_gains_are_unique():
-    """The matrix of the affine map from K^h to the coefficients has determinant 1: no other gains do it."""
     K = sp.symbols("K1:3", real=True)
     return Equation(sp.Integer(1), sp.Matrix(coefficients_of_polynomial(position_block(K))[1:]).jacobian(K).det())
 
@@ -97,19 +72,6 @@ def link_polynomial(variable: sp.Expr) -> sp.Expr:
     return variable * ((1 - 3 * lam**2) * variable + 3 * lam - lam**3)
 
 
-# kappa = mu u_3 and l = lambda_c.
-coupled_characteristic_polynomial = claim(
-    "3.coupled.characteristic",
-    "With the link the six errors have (p + l)^6 + kappa^2 p^2 ((1 - 3 l^2) p + 3 l - l^3)^2.",
-    lambda: Equation((p + lam) ** 6 + kappa**2 * link_polynomial(p) ** 2, polynomial_of(coupled_velocity_block())),
-)
-coupled_polynomial_without_link = claim(
-    "3.coupled.without_link",
-    "Without the link, kappa = 0, the six errors have (p + lambda_c)^6, as the choice of gains intends.",
-    lambda: Equation((p + lam) ** 6, polynomial_of(coupled_velocity_block().subs(kappa, 0))),
-)
-
-
 def crossing() -> tuple[sp.Expr, sp.Expr]:
     """Real and imaginary part of (lambda + i omega)^3 + i kappa link(i omega) = 0.
 
@@ -121,29 +83,21 @@ def crossing() -> tuple[sp.Expr, sp.Expr]:
     return real, imaginary
 
 
-@claim("3.coupled.factors")
 def coupled_polynomial_factors():
-    """The polynomial of the six errors is ((p + l)^3)^2 + (kappa link)^2, l = lambda_c, and so factors over i."""
     first, second = (p + lam) ** 3, kappa * link_polynomial(p)
     product = sp.expand((first + sp.I * second) * (first - sp.I * second))
     return Equation(product, polynomial_of(coupled_velocity_block()))
 
 
-@claim("3.coupled.crossing")
 def poles_cross_the_axis_at_one():
-    """A pole i omega on the axis has omega = 1 or -1: 8 lambda_c^3 omega (omega^2 - 1) = 0, and 0 is no pole."""
     real, imaginary = crossing()
     combination = real * omega * (1 - 3 * lam**2) - imaginary * (3 * lam - lam**3)
     return Equation([8 * lam**3 * omega * (omega**2 - 1), lam**3], [sp.expand(combination), real.subs(omega, 0)])
 
 
-@claim("3.coupled.crossing_value")
 def poles_cross_at_kappa_one():
-    """A pole on the imaginary axis needs kappa = 1 or -1.
-
-    At omega = 1 (-1) both parts carry the factor 1 + kappa (1 - kappa); the other factors, 3 l - l^3 and
-    1 - 3 l^2, have no common zero.
-    """
+    # At omega = 1 (-1) both parts carry the factor 1 + kappa (1 - kappa); the other factors, 3 l - l^3 and 1 - 3 l^2,
+    # have no common zero.
     real, imaginary = crossing()
     for side in (1, -1):
         factor = 1 + side * kappa
@@ -157,14 +111,10 @@ def poles_cross_at_kappa_one():
 REGIONS = ((sp.Integer(0), ()), (sp.Rational(1, 2), ()), (sp.Integer(2), (3, 4, 5)))
 
 
-@claim("3.coupled.stable")
 def coupled_system_is_stable_inside():
-    """The errors of (3.2) decay for every lambda_c > 0 exactly when |mu u_3| < 1.
-
-    The gains are those of 3.2.gains. No pole meets the imaginary axis for kappa other than 1 and -1
-    (3.coupled.crossing), so the number of poles on the right is constant on {lambda > 0, |kappa| < 1} and
-    on {kappa > 1}; it is counted at one point of each. At kappa = 1 there is a pole on the axis.
-    """
+    # The gains are those of 3.2.gains. No pole meets the imaginary axis for kappa other than 1 and -1
+    # (3.coupled.crossing), so the number of poles on the right is constant on {lambda > 0, |kappa| < 1} and on {kappa
+    # > 1}; it is counted at one point of each. At kappa = 1 there is a pole on the axis.
     counts = tuple(poles_on_the_right(sp.Integer(1), value) for value, _ in REGIONS)
     rates = ", ".join(str(sp.Float(decay_rate(sp.Integer(1), value), 6)) for value, _ in REGIONS)
     return fact(
@@ -217,37 +167,15 @@ def poles_on_the_right(lambda_value: sp.Expr, kappa_value: sp.Expr) -> int:
     return sum(count for real, count in found if real > 0)
 
 
-true_decay_rate = claim(
-    "3.coupled.decay",
-    "lambda_c = 1, mu u_3 = 1/20 (latitude near 58 degrees): the true decay rate is 0.577 instead of 1.",
-    lambda: Equation(
-        sp.Rational(577, 1000), decay_rate(sp.Integer(1), sp.Rational(1, 20)), tolerance=sp.Rational(1, 2000)
-    ),
-    expect=CERTIFIED,
-)
-
-
 def decay_rate(lambda_value: sp.Rational, kappa_value: sp.Rational) -> sp.Rational:
     """Decay rate, minus the largest real part of the poles: 20 digits of its ball."""
     largest = max((real for real, _ in poles(lambda_value, kappa_value)), key=lambda ball: float(ball.mid()))
     return -sp.Rational(largest.mid().str(20, radius=False))
 
 
-# To leading order, l = lambda_c; this is minus the link polynomial at p = -l, times i kappa.
-decay_for_a_small_link = claim(
-    "3.coupled.small_link",
-    "For a small link the six poles leave -lambda_c by the cube roots of 2 i kappa l^2 (1 + l^2) and of its negative.",
-    lambda: Equation(-2 * lam**2 * (1 + lam**2), sp.expand(link_polynomial(p).subs(p, -lam))),
-)
-
-
-@claim("3.coupled.repaired")
 def link_removed_by_the_split():
-    """The two-stage split of section 1 removes the link: (p + lambda_c)^6 for every kappa^2 != 1.
-
-    The gains are L^-1 L_0 K, with L of the chains and L_0 = L at kappa = 0. In chain coordinates the errors
-    have then the same matrix for every kappa, and at kappa = 0 it has the polynomial (p + lambda_c)^6.
-    """
+    # The gains are L^-1 L_0 K, with L of the chains and L_0 = L at kappa = 0. In chain coordinates the errors have
+    # then the same matrix for every kappa, and at kappa = 0 it has the polynomial (p + lambda_c)^6.
     F, H, _ = velocity().linear()
     H = H.subs(EARTH[2], kappa / MU)
     L = sp.ImmutableMatrix.vstack(*(H[row, :] * F**power for row in (0, 1) for power in (0, 1, 2)))
@@ -272,63 +200,19 @@ def coupled_position_block(second: tuple[sp.Expr, sp.Expr]) -> sp.Matrix:
     return joint_error_matrix(Ky=gains)[6:, 6:]
 
 
-# Stable only for l = lambda_h > mu |omega_1 omega_2|^(1/2); the decay rate is
-# lambda_h - mu |omega_1 omega_2|^(1/2).
-coupled_position_polynomial = claim(
-    "3.coupled.position",
-    "With gains that cancel mu^2 omega^2 the link leaves (p + l)^4 - mu^4 omega_1^2 omega_2^2.",
-    lambda: Equation(
-        (p + lam_h) ** 4 - mu**4 * w1**2 * w2**2,
-        polynomial_of(coupled_position_block((lam_h**2 - mu**2 * w2**2, lam_h**2 - mu**2 * w1**2))),
-    ),
-)
-# Its polynomial is (p + lambda_h)^2 ((p + lambda_h)^2 + mu^2 (omega_1^2 + omega_2^2)): always stable.
-plain_position_gains_are_better = claim(
-    "3.coupled.position_plain",
-    "With K_2^h = K_6^h = lambda_h^2 the coupled position stage decays with lambda_h exactly.",
-    lambda: Equation(
-        (p + lam_h) ** 2 * ((p + lam_h) ** 2 + mu**2 * (w1**2 + w2**2)),
-        polynomial_of(coupled_position_block((lam_h**2, lam_h**2))),
-    ),
-)
-
-
-@claim("3.coupled.whole")
-def whole_polynomial():
-    """The ten errors have the product of the polynomials of both stages."""
-    first = (p + lam) ** 6 + kappa**2 * link_polynomial(p) ** 2
-    second = (p + lam_h) ** 2 * ((p + lam_h) ** 2 + mu**2 * (w1**2 + w2**2))
-    return Equation(first * second, polynomial_of(coupled_errors(PLAIN)))
-
-
 # What the inhomogeneous terms do
 
 
-@claim("3.bias.velocity")
 def steady_error_of_the_velocity_stage():
-    """Constant d_2 in x_2', d_3 in x_3' leave d_2 + d_3 - 3 d_3/l^2, (1 - 3 l^2) d_3/l^3, 3 d_3/l (l = lambda_c)."""
     d2, d3 = sp.symbols("d_2 d_3", real=True)
     steady = sp.Matrix([d2 + d3 - 3 * d3 / lam**2, (1 - 3 * lam**2) * d3 / lam**3, 3 * d3 / lam])
     return Equation([sp.Integer(0), -d2, -d3], list(velocity_block(VELOCITY_GAINS) * steady))
 
 
-@claim("3.bias.position")
-def steady_error_of_the_position_stage():
-    """A constant drive -d of y_2' leaves Delta y_1 = -d/lambda_h^2, Delta y_2 = -2 d/lambda_h.
-
-    d gathers the steady error of x_1° and the terms left out.
-    """
-    d = sp.Symbol("d", real=True)
-    steady = sp.Matrix([-d / lam_h**2, -2 * d / lam_h])
-    return Equation([sp.Integer(0), d], list(position_block((2 * lam_h, lam_h**2 - mu**2 * w2**2)) * steady))
-
-
 # Pre-estimation and the situations of the last paragraph
 
 
-@claim("3.preestimation.exact")
 def preestimation_frees_the_position_stage():
-    """With exact x_1° the errors of y_1, y_2 obey (p + lambda_h)^2 alone: two variables instead of four."""
     t = sp.Symbol("t", positive=True)
     start = sp.Matrix(sp.symbols("e_1 e_2", real=True))
     A = position_block((2 * lam_h, lam_h**2 - mu**2 * w2**2))
@@ -336,9 +220,7 @@ def preestimation_frees_the_position_stage():
     return Equation(solution.diff(t), A * solution)
 
 
-@claim("3.preestimation.transient")
 def transient_driven_by_the_velocity_stage():
-    """Without it an error of the velocity stage drives y: Delta y_1 is -1/(p + lambda_h)^2 of Delta x_1."""
     A = position_block((2 * lam_h, lam_h**2 - mu**2 * w2**2))
     return Equation(
         [sp.Integer(-1), (p + lam_h) ** 2],
@@ -352,53 +234,128 @@ def position_only_block(gains: tuple[sp.Expr, ...]) -> sp.Matrix:
     return F.extract(range(4), range(4)).subs(MU, 0) - sp.Matrix(gains) * H.extract([0], range(4))
 
 
-# They are 4 l, 6 l^2 - 1, 4 l - 4 l^3, 6 l^2 - l^4 - 1 with l = lambda_h.
-position_only = claim(
-    "3.situations.position_only",
-    "Only position, mu^2 left out: four gains in closed form give (p + lambda_h)^4 on y_1, y_2, x_1, x_2.",
-    lambda: Equation(
-        (p + lam_h) ** 4,
-        polynomial_of(
-            position_only_block((4 * lam_h, 6 * lam_h**2 - 1, 4 * lam_h - 4 * lam_h**3, 6 * lam_h**2 - lam_h**4 - 1))
-        ),
-    ),
-)
-position_only_by_zeroing_oscillates = claim(
-    "3.situations.zeroing",
-    "Only position with K^c = 0: the polynomial keeps the factor p^2 (p^2 + 1)^2, the Schuler errors are undamped.",
-    lambda: Equation(
-        p**2 * (p**2 + 1) ** 2 * ((p + lam_h) ** 2 * ((p + lam_h) ** 2 + mu**2 * (w1**2 + w2**2))),
-        polynomial_of(joint_error_matrix((sp.Integer(0),) * 6, PLAIN)),
-    ),
-)
-neither_information = claim(
-    "3.situations.neither",
-    "Neither information: all gains are zero and the estimates are carried along.",
-    lambda: Equation(
-        p**4 * (p**2 + 1) ** 2 * (p**2 + mu**2 * (w1**2 + w2**2)),
-        polynomial_of(joint_error_matrix((sp.Integer(0),) * 6, NO_POSITION)),
-    ),
-)
-
-
-@claim("3.situations.velocity_after_joint")
-def velocity_after_a_joint_session():
-    """Only velocity after a joint session (K^h = 0): x keeps its poles, y is carried along undamped."""
-    return Equation(
-        ((p + lam) ** 6 + kappa**2 * link_polynomial(p) ** 2) * p**2 * (p**2 + mu**2 * (w1**2 + w2**2)),
-        polynomial_of(coupled_errors(NO_POSITION)),
-    )
-
-
-@claim("3.situations.velocity_after_position")
 def velocity_after_a_position_session():
-    """Only velocity after position alone: x_1 and x_2 are known, and the unknown d of x_3 disturbs them at first.
-
-    Their rates start with -K_1 d and -K_2 d; all three errors then decay as exp(-lambda_c t) times a polynomial.
-    """
+    # Their rates start with -K_1 d and -K_2 d; all three errors then decay as exp(-lambda_c t) times a polynomial.
     t, d = sp.Symbol("t", positive=True), sp.Symbol("d", real=True)
     A, start = velocity_block(VELOCITY_GAINS), sp.Matrix([0, 0, d])
     shifted = A + lam * sp.eye(3)
     solution = sp.exp(-lam * t) * (sp.eye(3) + t * shifted + t**2 * shifted**2 / 2) * start
     first = [-VELOCITY_GAINS[0] * d, -VELOCITY_GAINS[1] * d]
     return Equation([*solution.diff(t), *start, *first], [*(A * solution), *solution.subs(t, 0), *(A * start)[:2]])
+
+
+CLAIMS = claims(
+    "3.2.gains | Gains 1 - 3 l^2, 3 l - l^3, l^3 with l = lambda_c give (p + lambda_c)^3 in both channels.",
+    lambda: Equation(
+        [(p + lam) ** 3] * 2, [polynomial_of(velocity_block(VELOCITY_GAINS, channel)) for channel in (0, 1)]
+    ),
+    "3.2.gains_unique | These gains are the only ones: the coefficients are affine in K with determinant 1 or -1.",
+    velocity_gains_are_unique,
+    # K_6^h has omega_1 in the place of omega_2.
+    "3.3.gains | K_1^h = 2 lambda_h and K_2^h = lambda_h^2 - mu^2 omega_2^2 give (p + lambda_h)^2 exactly.",
+    lambda: Equation(
+        [(p + lam_h) ** 2] * 2,
+        [
+            polynomial_of(position_block((2 * lam_h, lam_h**2 - mu**2 * w**2), channel))
+            for channel, w in ((0, w2), (1, w1))
+        ],
+    ),
+    "3.3.gains_unique | The matrix of the affine map from K^h to the coefficients has determinant 1: no other "
+    "gains do it.",
+    position_gains_are_unique,
+    # kappa = mu u_3 and l = lambda_c.
+    "3.coupled.characteristic | With the link the six errors have (p + l)^6 + kappa^2 p^2 ((1 - 3 l^2) p + 3 l - "
+    "l^3)^2.",
+    lambda: Equation((p + lam) ** 6 + kappa**2 * link_polynomial(p) ** 2, polynomial_of(coupled_velocity_block())),
+    "3.coupled.without_link | Without the link, kappa = 0, the six errors have (p + lambda_c)^6, as the choice of "
+    "gains intends.",
+    lambda: Equation((p + lam) ** 6, polynomial_of(coupled_velocity_block().subs(kappa, 0))),
+    "3.coupled.factors | The polynomial of the six errors is ((p + l)^3)^2 + (kappa link)^2, l = lambda_c, and so "
+    "factors over i.",
+    coupled_polynomial_factors,
+    "3.coupled.crossing | A pole i omega on the axis has omega = 1 or -1: 8 lambda_c^3 omega (omega^2 - 1) = 0, "
+    "and 0 is no pole.",
+    poles_cross_the_axis_at_one,
+    "3.coupled.crossing_value | A pole on the imaginary axis needs kappa = 1 or -1.",
+    poles_cross_at_kappa_one,
+    "3.coupled.stable | The errors of (3.2) decay for every lambda_c > 0 exactly when |mu u_3| < 1.",
+    coupled_system_is_stable_inside,
+    "3.coupled.decay | lambda_c = 1, mu u_3 = 1/20 (latitude near 58 degrees): the true decay rate is 0.577 "
+    "instead of 1. | CERTIFIED",
+    lambda: Equation(
+        sp.Rational(577, 1000), decay_rate(sp.Integer(1), sp.Rational(1, 20)), tolerance=sp.Rational(1, 2000)
+    ),
+    # To leading order, l = lambda_c; this is minus the link polynomial at p = -l, times i kappa.
+    "3.coupled.small_link | For a small link the six poles leave -lambda_c by the cube roots of 2 i kappa l^2 (1 + "
+    "l^2) and of its negative.",
+    lambda: Equation(-2 * lam**2 * (1 + lam**2), sp.expand(link_polynomial(p).subs(p, -lam))),
+    "3.coupled.repaired | The two-stage split of section 1 removes the link: (p + lambda_c)^6 for every kappa^2 != 1.",
+    link_removed_by_the_split,
+    # Stable only for l = lambda_h > mu |omega_1 omega_2|^(1/2); the decay rate is
+    # lambda_h - mu |omega_1 omega_2|^(1/2).
+    "3.coupled.position | With gains that cancel mu^2 omega^2 the link leaves (p + l)^4 - mu^4 omega_1^2 omega_2^2.",
+    lambda: Equation(
+        (p + lam_h) ** 4 - mu**4 * w1**2 * w2**2,
+        polynomial_of(coupled_position_block((lam_h**2 - mu**2 * w2**2, lam_h**2 - mu**2 * w1**2))),
+    ),
+    # Its polynomial is (p + lambda_h)^2 ((p + lambda_h)^2 + mu^2 (omega_1^2 + omega_2^2)): always stable.
+    "3.coupled.position_plain | With K_2^h = K_6^h = lambda_h^2 the coupled position stage decays with lambda_h "
+    "exactly.",
+    lambda: Equation(
+        (p + lam_h) ** 2 * ((p + lam_h) ** 2 + mu**2 * (w1**2 + w2**2)),
+        polynomial_of(coupled_position_block((lam_h**2, lam_h**2))),
+    ),
+    "3.coupled.whole | The ten errors have the product of the polynomials of both stages.",
+    lambda: Equation(
+        ((p + lam) ** 6 + kappa**2 * link_polynomial(p) ** 2)
+        * ((p + lam_h) ** 2 * ((p + lam_h) ** 2 + mu**2 * (w1**2 + w2**2))),
+        polynomial_of(coupled_errors(PLAIN)),
+    ),
+    "3.bias.velocity | Constant d_2 in x_2', d_3 in x_3' leave d_2 + d_3 - 3 d_3/l^2, (1 - 3 l^2) d_3/l^3, 3 d_3/l "
+    "(l = lambda_c).",
+    steady_error_of_the_velocity_stage,
+    # d gathers the steady error of x_1° and the terms left out.
+    "3.bias.position | A constant drive -d of y_2' leaves Delta y_1 = -d/lambda_h^2, Delta y_2 = -2 d/lambda_h.",
+    lambda: Equation(
+        [sp.Integer(0), sp.Symbol("d", real=True)],
+        list(
+            position_block((2 * lam_h, lam_h**2 - mu**2 * w2**2))
+            * sp.Matrix([-sp.Symbol("d", real=True) / lam_h**2, -2 * sp.Symbol("d", real=True) / lam_h])
+        ),
+    ),
+    "3.preestimation.exact | With exact x_1° the errors of y_1, y_2 obey (p + lambda_h)^2 alone: two variables "
+    "instead of four.",
+    preestimation_frees_the_position_stage,
+    "3.preestimation.transient | Without it an error of the velocity stage drives y: Delta y_1 is -1/(p + "
+    "lambda_h)^2 of Delta x_1.",
+    transient_driven_by_the_velocity_stage,
+    # They are 4 l, 6 l^2 - 1, 4 l - 4 l^3, 6 l^2 - l^4 - 1 with l = lambda_h.
+    "3.situations.position_only | Only position, mu^2 left out: four gains in closed form give (p + lambda_h)^4 on "
+    "y_1, y_2, x_1, x_2.",
+    lambda: Equation(
+        (p + lam_h) ** 4,
+        polynomial_of(
+            position_only_block((4 * lam_h, 6 * lam_h**2 - 1, 4 * lam_h - 4 * lam_h**3, 6 * lam_h**2 - lam_h**4 - 1))
+        ),
+    ),
+    "3.situations.zeroing | Only position with K^c = 0: the polynomial keeps the factor p^2 (p^2 + 1)^2, the "
+    "Schuler errors are undamped.",
+    lambda: Equation(
+        p**2 * (p**2 + 1) ** 2 * ((p + lam_h) ** 2 * ((p + lam_h) ** 2 + mu**2 * (w1**2 + w2**2))),
+        polynomial_of(joint_error_matrix((sp.Integer(0),) * 6, PLAIN)),
+    ),
+    "3.situations.neither | Neither information: all gains are zero and the estimates are carried along.",
+    lambda: Equation(
+        p**4 * (p**2 + 1) ** 2 * (p**2 + mu**2 * (w1**2 + w2**2)),
+        polynomial_of(joint_error_matrix((sp.Integer(0),) * 6, NO_POSITION)),
+    ),
+    "3.situations.velocity_after_joint | Only velocity after a joint session (K^h = 0): x keeps its poles, y is "
+    "carried along undamped.",
+    lambda: Equation(
+        ((p + lam) ** 6 + kappa**2 * link_polynomial(p) ** 2) * p**2 * (p**2 + mu**2 * (w1**2 + w2**2)),
+        polynomial_of(coupled_errors(NO_POSITION)),
+    ),
+    "3.situations.velocity_after_position | Only velocity after position alone: x_1 and x_2 are known, and the "
+    "unknown d of x_3 disturbs them at first.",
+    velocity_after_a_position_session,
+)

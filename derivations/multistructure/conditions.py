@@ -2,7 +2,7 @@
 
 import sympy as sp
 
-from navsym.claims import Equation, claim
+from navsym.claims import Equation, claim, claims
 from navsym.multimodel.exact import Kit, run_exactly
 from navsym.multimodel.schemes import scheme
 from navsym_papers.multistructure import examples
@@ -44,14 +44,12 @@ def covariance_at(step: int, series: list[list[int]], kit: Kit = examples.EXPRES
     return steps[step - 1].covariance[0][0]
 
 
-next_covariance_printed = claim(
-    "18.next",
-    "Below (18): (12) and (13) at step k give P(k+1), which does not depend on Y(k+1) (3 or 1, k = 0).",
+CLAIMS = claims(
+    "18.next | Below (18): (12) and (13) at step k give P(k+1), which does not depend on Y(k+1) (3 or 1, k = 0). | "
+    "undecidable: (12) and (13) at step k give X(k) and P(k), or those of k+1 at the next step: + 1 is lost once "
+    "or stands there once too often; P(k+1) of a switching signal depends on the measurement Y(k+1), through the "
+    "weights; in the example P(1) is 0.574 larger for Y(1) = 3 than for Y(1) = 1",
     lambda: Equation(covariance_at(1, [[3]]), covariance_at(1, [[1]])),
-    slip="undecidable",
-    reason="(12) and (13) at step k give X(k) and P(k), or those of k+1 at the next step: + 1 is lost once or stands "
-    "there once too often; P(k+1) of a switching signal depends on the measurement Y(k+1), through the weights; in the "
-    "example P(1) is 0.574 larger for Y(1) = 3 than for Y(1) = 1",
 )
 
 

@@ -4,7 +4,7 @@ import re
 
 import sympy as sp
 
-from navsym.claims import PROVED, Bound, Equation, Finding, Property, claim, fact, state
+from navsym.claims import PROVED, Bound, Equation, Finding, Property, claim, claims, fact, state
 from navsym.language.expression import to_text
 from navsym_papers.multistructure import model
 
@@ -17,9 +17,8 @@ UNIT = {model.vy: 1, model.vx: 0, model.height: 0, model.radius: 1}
 SPHERE = {model.latitude: (sp.Rational(-3, 2), sp.Rational(3, 2)), model.height: (0, None)}
 
 
-@claim("1.nonlinear")
+@claim("1.nonlinear | The errors of reckoned coordinates depend on the sensor errors in a nonlinear way.")
 def nonlinear():
-    """The errors of reckoned coordinates depend on the sensor errors in a nonlinear way."""
     point = UNIT | {model.latitude: 0, model.heading: 0}
     at_rest = dict.fromkeys((*RECKONING.errors, *RECKONING.sensor_errors), 0)
     curvature = S.diff(model.d_heading, 2).subs(at_rest)[0].subs(point)
@@ -46,9 +45,8 @@ def arguments_corrected():
     return fact(True, S.free_symbols <= known, method, PROVED, scope=scope, meaning=meaning)
 
 
-@claim("3")
+@claim("3 | (3) for course and log: with S1 and S2 differentiated by hand, S1 dpsi + S2 d is the linear part of S.")
 def linearised():
-    """(3) for course and log: with S1 and S2 differentiated by hand, S1 dpsi + S2 d is the linear part of S."""
     errors = (*RECKONING.errors, *RECKONING.sensor_errors)
     along = S.subs({e: scale * e for e in errors}, simultaneous=True)
     k, p, v, u, r = model.heading, model.latitude, model.vy, model.vx, model.radius + model.height
@@ -69,9 +67,8 @@ def linearised():
     return Equation(by_hand * sp.Matrix(errors), along.diff(scale).subs(scale, 0), SPHERE)
 
 
-@claim("3.time")
+@claim("3.time | (3): S1 and S2 depend on the coordinates, hence on time.")
 def unsteady():
-    """(3): S1 and S2 depend on the coordinates, hence on time."""
     S1, S2 = RECKONING.linear_parts()
     point = UNIT | {model.latitude: sp.pi / 4, model.heading: sp.pi / 2}
     # at one radian, a rational point
@@ -86,9 +83,8 @@ def unsteady():
     )
 
 
-@claim("2.form")
+@claim("2.form | (2): the latitude error obeys (2); to first order the longitude error adds only a latitude term.")
 def feedback():
-    """(2): the latitude error obeys (2); to first order the longitude error adds only a latitude term."""
     S1, S2 = RECKONING.linear_parts()
     sensors = S2 * sp.Matrix(RECKONING.sensor_errors)
     east = model.vy * sp.sin(model.heading) + model.vx * sp.cos(model.heading)
@@ -111,20 +107,29 @@ def discretised(S1, step):
 tau = sp.Symbol("tau", positive=True)
 
 
-type_printed = claim(
-    "4.type",
-    "(4): the models that (4) switches between are of type (2) (course and log, one step).",
+f, df, tilt = sp.symbols("f Deltaf beta", real=True)
+gravity = sp.Symbol("g", positive=True)
+
+
+def inertial_rate():
+    """Rate of the velocity error of one horizontal axis: the reading taken as it is, less what truly accelerates.
+
+    A platform tilted by beta carries an accelerometer that reads f = a cos(beta) + g sin(beta) + df.
+    """
+    true = (f - df - gravity * sp.sin(tilt)) / sp.cos(tilt)
+    return f - true
+
+
+FREE = [None, None, []]
+
+
+CLAIMS_4 = claims(
+    "4.type | (4): the models that (4) switches between are of type (2) (course and log, one step). | undecidable: "
+    "below (5) the models of (4) are said to be of type (2), but (2) without position errors on the right gives "
+    "the identity for their block of A; it is (3) that (4) samples; by hand: due east at 45 degrees with v tau = R "
+    "the entry below the diagonal is sqrt(2), not 0",
     lambda: Equation(sp.eye(2), discretised(RECKONING.linear_parts()[0], tau), SPHERE),
-    slip="undecidable",
-    reason="below (5) the models of (4) are said to be of type (2), but (2) without position errors on the right "
-    "gives the identity for their block of A; it is (3) that (4) samples; by hand: due east at 45 degrees with v "
-    "tau = R the entry below the diagonal is sqrt(2), not 0",
-)
-
-
-type_corrected = claim(
-    "4.type*",
-    "(4): the models that (4) switches between are of type (3): A = exp(S1 tau) for the position errors.",
+    "4.type* | (4): the models that (4) switches between are of type (3): A = exp(S1 tau) for the position errors.",
     lambda: Equation(
         sp.Matrix(
             [
@@ -144,22 +149,6 @@ type_corrected = claim(
         SPHERE,
     ),
 )
-
-
-f, df, tilt = sp.symbols("f Deltaf beta", real=True)
-gravity = sp.Symbol("g", positive=True)
-
-
-def inertial_rate():
-    """Rate of the velocity error of one horizontal axis: the reading taken as it is, less what truly accelerates.
-
-    A platform tilted by beta carries an accelerometer that reads f = a cos(beta) + g sin(beta) + df.
-    """
-    true = (f - df - gravity * sp.sin(tilt)) / sp.cos(tilt)
-    return f - true
-
-
-FREE = [None, None, []]
 
 
 @claim("1.inertial")
@@ -183,27 +172,24 @@ def inertial_is_nonlinear():
     )
 
 
-@claim("3.inertial")
-def inertial_linearised():
-    """(3) for one inertial axis: the velocity error grows with the accelerometer error plus g times the tilt."""
-    rate = inertial_rate()
-    at_rest = {tilt: 0, df: 0}
-    return Equation(df + gravity * tilt, sum(rate.diff(s).subs(at_rest) * s for s in (tilt, df)))
-
-
 def sensor_part() -> sp.Matrix:
     """S2 of (3), (2, 4)."""
     return RECKONING.linear_parts()[1]
 
 
+CLAIMS_3 = claims(
+    "3.inertial | (3) for one inertial axis: the velocity error grows with the accelerometer error plus g times "
+    "the tilt.",
+    lambda: Equation(df + gravity * tilt, sum(inertial_rate().diff(s).subs({tilt: 0, df: 0}) * s for s in (tilt, df))),
+)
+
+
 @claim(
-    "2.growth.every",
-    slip="paper",
-    reason="true on straight courses; on a circle the rate turns with the course, its mean is zero, the error of the "
-    "latitude comes back; by hand: the integral of cos over a whole turn is 0",
+    "2.growth.every | Below (2), for every course: after a turn at constant rate a constant sensor error is left in "
+    "the latitude. | paper: true on straight courses; on a circle the rate turns with the course, its mean is zero, "
+    "the error of the latitude comes back; by hand: the integral of cos over a whole turn is 0"
 )
 def every_sensor_error_grows_on_every_course():
-    """Below (2), for every course: after a turn at constant rate a constant sensor error is left in the latitude."""
     rates = sensor_part().row(0).subs(UNIT)
     over_turn = [sp.integrate(rate, (model.heading, 0, 2 * sp.pi)) for rate in rates]
     return Bound(sum(value**2 for value in over_turn), ">", sp.Integer(0))
@@ -224,9 +210,8 @@ t, drift = sp.symbols("t epsilon_p", real=True)
 rate = sp.Symbol("Omega", positive=True)
 
 
-@claim("2.growth")
+@claim("2.growth | (2), due north: a constant error of the speed lets the latitude error grow in proportion to time.")
 def growth():
-    """(2), due north: a constant error of the speed lets the latitude error grow in proportion to time."""
     north = {model.d_heading: 0, model.d_height: 0, model.d_vx: 0, model.heading: 0, model.vx: 0}
     printed = model.d_vy * t / (model.radius + model.height)
     return Equation([printed.diff(t), printed.subs(t, 0)], [S[0].subs(north), 0], SPHERE)

@@ -13,7 +13,7 @@ so that after any number of steps it is at most 2 c/(1 - kappa) in log-odds, and
 
 import sympy as sp
 
-from navsym.claims import Equation, claim
+from navsym.claims import Equation, claim, claims
 
 x = sp.Symbol("x", positive=True)  # odds g^1 / g^2 before the step
 rho1, rho2 = sp.symbols("rho1 rho2", positive=True)
@@ -44,17 +44,15 @@ def kappa() -> sp.Expr:
     return (a * d - b * c) / (a * d + b * c)
 
 
-# For p11 p22 >= p12 p21 the multiplier lies between 0 and kappa < 1; else the modes change places, kappa its size.
-modes_are_forgotten = claim(
-    "10.forgets",
-    "(10) with rho^i, two modes: an error of log-odds is multiplied by kappa (1 - a square over a positive number).",
+CLAIMS = claims(
+    # For p11 p22 >= p12 p21 the multiplier lies between 0 and kappa < 1; else the modes change places, kappa its size.
+    "10.forgets | (10) with rho^i, two modes: an error of log-odds is multiplied by kappa (1 - a square over a "
+    "positive number).",
     lambda: Equation(
         kappa() * (1 - (a * c * x - b * d) ** 2 / ((a**2 * x + b**2) * (c**2 * x + d**2))), amplification(CHAIN)
     ),
-)
-the_bound_is_reached = claim(
-    "10.forgets.sharp",
-    "(10) with rho^i, two modes: at the odds sqrt(p12 p22/(p11 p21)) the multiplier is kappa: no bound is smaller.",
+    "10.forgets.sharp | (10) with rho^i, two modes: at the odds sqrt(p12 p22/(p11 p21)) the multiplier is kappa: "
+    "no bound is smaller.",
     lambda: Equation(kappa(), amplification(CHAIN).subs(x, b * d / (a * c))),
 )
 

@@ -60,9 +60,8 @@ def correction():
         yield sp.eye(n), (inverse(P) + H.T * inverse(R) * H) * corrected
 
 
-@claim("8.joseph")
+@claim("8.joseph | Joseph's form (I - K H) P (I - K H)^T + K R K^T equals P - K H P at Kalman's gain.")
 def joseph():
-    """Joseph's form (I - K H) P (I - K H)^T + K R K^T equals P - K H P at Kalman's gain."""
     for n, m in SHAPES:
         P, H, R, _, gain, corrected = measured(n, m)
         L = sp.eye(n) - gain * H
@@ -97,9 +96,8 @@ v, D, P, R, H, Y, mean = (
 )
 
 
-@claim("18")
+@claim("18 | (18) for a scalar measurement of a scalar state: exponent and squared denominator of the integral.")
 def likelihood():
-    """(18) for a scalar measurement of a scalar state: exponent and squared denominator of the integral."""
     innovation, spread = Y - H * mean, H**2 * P + R
     # Both sides are exp(-a)/sqrt(b) with b > 0: they are equal when a and b are.
     printed = [innovation * innovation / (2 * spread), 2 * sp.pi * spread]
@@ -110,9 +108,8 @@ def likelihood():
     return Equation(printed, [least / 2, (2 * sp.pi * R) * (2 * sp.pi * P) / (2 * sp.pi * V)])
 
 
-@claim("18.exponent")
+@claim("18.exponent | (18), exponent: the minimum over x of the two quadratic forms is v^T D^-1 v.")
 def exponent():
-    """(18), exponent: the minimum over x of the two quadratic forms is v^T D^-1 v."""
     for n, m in SHAPES:
         prior, observe, noise, spread, gain, _ = measured(n, m)
         start, z = full("m", n, 1), full("y", m, 1)
@@ -138,13 +135,12 @@ d = sp.Symbol("d", positive=True)
 
 
 @claim(
-    "15.gaussian",
-    slip="undecidable",
-    reason="the index i is lost: pi^i[x(k)] is Gaussian, the sum pi[x(k)] of two or more is not, as its fourth "
-    "moment shows; the parameters named beside it carry i; by hand: d = 1 gives 12 against 1 + 6 + 3 = 10",
+    "15.gaussian | Before (14): pi[x(k)] is Gaussian, so its fourth central moment is 3 P^2 (means -d and d, "
+    "variances 1). | undecidable: the index i is lost: pi^i[x(k)] is Gaussian, the sum pi[x(k)] of two or more is "
+    "not, as its fourth moment shows; the parameters named beside it carry i; by hand: d = 1 gives 12 against 1 + 6 "
+    "+ 3 = 10"
 )
 def sum_is_gaussian():
-    """Before (14): pi[x(k)] is Gaussian, so its fourth central moment is 3 P^2 (means -d and d, variances 1)."""
     variance = 1 + d**2
     # E[(d + s)^4] of a standard normal s is d^4 + 6 d^2 + 3, the same for -d.
     return Equation(3 * variance**2, d**4 + 6 * d**2 + 3)

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import sympy as sp
 from flint import arb, fmpq, fmpq_mat, fmpq_poly
 
-from navsym.claims import CERTIFIED, PROVED, Finding, Property, certify_at_sight, claim, fact, state
+from navsym.claims import CERTIFIED, PROVED, Finding, Property, certify_at_sight, claim, claims, fact, state
 from navsym.language.expression import to_text
 from navsym.multimodel.exact import Kit, Leaf, Model, run_exactly
 from navsym.multimodel.schemes import filters_at, scheme
@@ -20,9 +20,8 @@ from navsym_papers.multistructure.examples import list_leaves
 from navsym_papers.multistructure.pulsating import MODELS, SWITCHING, differs, leaves_by_tree, say_sequences
 
 
-@claim("count.K")
+@claim("count.K | K-pulsating: within an interval of K steps the number of sequences reaches I^K (I to 4, K to 5).")
 def number_in_an_interval():
-    """K-pulsating: within an interval of K steps the number of sequences reaches I^K (I to 4, K to 5)."""
     cases = [(modes, K) for modes in (1, 2, 3, 4) for K in (1, 2, 3, 4, 5)]
     found = tuple(max(filters_at(scheme("k-pulsating", K), modes, 1, k) for k in range(1, 5 * K)) for modes, K in cases)
     counted = tuple(leaves_by_tree(modes, K, 1) for modes, K in cases)
@@ -145,14 +144,12 @@ def compare(first: Mean, second: Mean, meaning: list[dict]) -> Property:
 
 
 @claim(
-    "K.better",
-    slip="paper",
-    reason="read as: every estimate, in the mean square over all measurements. In a model seen at step 1 the third "
-    "with K = 2 is farther from the optimal one than with K = 1, whose two folds happen to cancel in part (0.1107 "
-    "against 0.0995)",
+    "K.better | K-pulsating gives the higher quality: in a model seen at step 1 the third estimate is nearer with K "
+    "= 2. | paper: read as: every estimate, in the mean square over all measurements. In a model seen at step 1 the "
+    "third with K = 2 is farther from the optimal one than with K = 1, whose two folds happen to cancel in part "
+    "(0.1107 against 0.0995)"
 )
 def longer_is_better():
-    """K-pulsating gives the higher quality: in a model seen at step 1 the third estimate is nearer with K = 2."""
     one, two = (mean_of(row[2]) for row in squared_distances())
     return compare(two, one, [state(f"{two.text} - {SPREAD}", "<=", f"{one.text} + {SPREAD}")])
 
@@ -179,20 +176,18 @@ def distances(step: int, *printed: int) -> Property:
     return fact(printed, tuple(map(int, digits)), f"{METHOD}, four decimals", CERTIFIED, scope=SCOPE, meaning=meaning)
 
 
-@claim("K.second", expect=CERTIFIED)
-def second_estimates():
-    """K-pulsating: the mean square distances of the second estimate here are 0 (K = 2, not folded), 0.0467 (K = 1)."""
-    return distances(2, 0, 467)
-
-
-@claim("K.third", expect=CERTIFIED)
-def third_estimates():
-    """K-pulsating: the mean square distances of the third estimate here are 0.1107 (K = 2), 0.0995 (K = 1)."""
-    return distances(3, 1107, 995)
-
-
 #: Found by search: three measurements on which one fold less ends farther from the optimal estimate.
 WORSE = [[2], [3], [0]]
+
+
+CLAIMS_K = claims(
+    "K.second | K-pulsating: the mean square distances of the second estimate here are 0 (K = 2, not folded), "
+    "0.0467 (K = 1). | CERTIFIED",
+    lambda: distances(2, 0, 467),
+    "K.third | K-pulsating: the mean square distances of the third estimate here are 0.1107 (K = 2), 0.0995 (K = "
+    "1). | CERTIFIED",
+    lambda: distances(3, 1107, 995),
+)
 
 
 @claim("K.series", expect=CERTIFIED)
@@ -259,8 +254,8 @@ def lossless_fold():
     return fact((4, 1), (len(leaves), len(second)), method, PROVED, scope=scope, evidence=evidence, meaning=meaning)
 
 
-@claim("K.longer", expect=CERTIFIED)
-def longer_may_be_worse():
-    """A longer interval can lose: in the same example K = 3 misses the optimal estimate that K = 2 finds."""
-    series = [[1], [0], [4], [1]]
-    return differs(*(examples.estimate(LATE, SWITCHING, series, period) for period in (3, 4)))
+CLAIMS_K_2 = claims(
+    "K.longer | A longer interval can lose: in the same example K = 3 misses the optimal estimate that K = 2 "
+    "finds. | CERTIFIED",
+    lambda: differs(*(examples.estimate(LATE, SWITCHING, [[1], [0], [4], [1]], period) for period in (3, 4))),
+)

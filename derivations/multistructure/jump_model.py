@@ -15,9 +15,8 @@ def chain(size, entries=distribution):
     return entries("s", size), [entries(f"p{j}", size) for j in range(size)]
 
 
-@claim("5")
+@claim("5 | (5): p^ij is the probability of i after j, so its columns (fixed j) sum to one (chains of 2 to 4 modes).")
 def transition_probabilities():
-    """(5): p^ij is the probability of i after j, so its columns (fixed j) sum to one (chains of 2 to 4 modes)."""
     for size in (2, 3, 4):
         start, switch = chain(size)
         both = {(i, j): start[j] * switch[j][i] for i in range(size) for j in range(size)}
@@ -60,9 +59,8 @@ def summed(table, **fixed):
     return sp.expand(sp.Add(*(v for key, v in table.items() if all(key[a] == b for a, b in wanted))))
 
 
-@claim("6.markov")
+@claim("6.markov | Under (6): the vector of state, mode and previous measurement is Markov (two modes, two states).")
 def markov():
-    """Under (6): the vector of state, mode and previous measurement is Markov (two modes, two states)."""
     table = path(
         [free(f"s{i}", 2) for i in TWO],
         [distribution(f"p{j}", 2) for j in TWO],
@@ -80,21 +78,17 @@ def markov():
 
 
 @claim(
-    "14",
-    slip="undecidable",
-    reason="P[I(k) = 1] is one number for all modes; the digit 1 stands for the letter i, and j for ij; by hand: "
-    "probabilities 1/2, 1/3, 1/6 would all be 1/2",
+    "14 | (14) as printed: p^i(k) = P[I(k) = 1] for every mode i. | undecidable: P[I(k) = 1] is one number for all "
+    "modes; the digit 1 stands for the letter i, and j for ij; by hand: probabilities 1/2, 1/3, 1/6 would all be 1/2"
 )
 def forgetful_printed():
-    """(14) as printed: p^i(k) = P[I(k) = 1] for every mode i."""
     start, _ = chain(3)
     box = {symbol: (0, sp.Rational(1, 3)) for symbol in start[:2]}
     return Equation([start[0]] * 3, start, box)
 
 
-@claim("14*")
+@claim("14* | (14): when p^ij(k) does not depend on j it is P[I(k) = i] (chains of 2 to 4 modes).")
 def forgetful():
-    """(14): when p^ij(k) does not depend on j it is P[I(k) = i] (chains of 2 to 4 modes)."""
     for size in (2, 3, 4):
         start, row = distribution("s", size), distribution("p", size)
         for i in range(size):
@@ -102,14 +96,12 @@ def forgetful():
 
 
 @claim(
-    "14.follows",
-    slip="paper",
-    reason="folding pi[x(k-1)] into one Gaussian forgets the state's dependence on the mode, not the mode: the mode "
+    "14.follows | Before (14): after the Gaussian approximation the mode is predicted by P[I(k) = i] (two modes). | "
+    "paper: folding pi[x(k-1)] into one Gaussian forgets the state's dependence on the mode, not the mode: the mode "
     "before is still known through g^j(k-1), and P[I(k) = i] is not its prediction; by hand: a mode that never "
-    "changes, g = (0.9, 0.1) after an even start: the next mode is 1 with 0.9, not 0.5",
+    "changes, g = (0.9, 0.1) after an even start: the next mode is 1 with 0.9, not 0.5"
 )
 def follows_printed():
-    """Before (14): after the Gaussian approximation the mode is predicted by P[I(k) = i] (two modes)."""
     start, switch = chain(2)
     seen = free("rho", 2)
     prior = sum(start[j] * switch[j][0] for j in TWO)
@@ -133,9 +125,8 @@ def follows():
         )
 
 
-@claim("19")
+@claim("19 | (19): with the identity in place of p^ij the mode never changes, over any number of steps up to six.")
 def no_switching():
-    """(19): with the identity in place of p^ij the mode never changes, over any number of steps up to six."""
     start = distribution("s", 3)
     identity = sp.Matrix(3, 3, frozen)
     for steps in range(1, 7):

@@ -6,7 +6,7 @@ two components stand for any dimension.
 
 import sympy as sp
 
-from navsym.claims import Equation, claim
+from navsym.claims import Equation, claim, claims
 from navsym_papers.multistructure import finite
 from navsym_papers.multistructure.finite import Step, every_size, step
 from navsym_papers.multistructure.recursion import UNIT
@@ -29,22 +29,12 @@ def partial_mean(s: Step, name: str, i: int):
 
 
 @claim(
-    "12",
-    slip="paper",
-    reason="the sum runs over j while every factor carries i, as in (11); by hand: g = (3/4, 1/4), X^i = (0, 4) "
-    "have the mean 1, the print has 2 g^i X^i, 0 or 2",
+    "12 | (12) as printed, summed over j. | paper: the sum runs over j while every factor carries i, as in (11); by "
+    "hand: g = (3/4, 1/4), X^i = (0, 4) have the mean 1, the print has 2 g^i X^i, 0 or 2"
 )
 def estimate_printed():
-    """(12) as printed, summed over j."""
     s = step(2, 2)
     return Equation(2 * finite.mode(s, 0) * partial_mean(s, "xi", 0), mean(s, "xi"), UNIT(s))
-
-
-@claim("12*")
-def estimate():
-    """(12): the mean of the mixture is the sum over i of g^i times the partial mean [I,n = 2,2 3,2 2,3]."""
-    for s in every_size():
-        yield sum(finite.mode(s, i) * partial_mean(s, "xi", i) for i in s.I), mean(s, "xi")
 
 
 def mixture(size: int):
@@ -71,29 +61,21 @@ def right_side_of_13(size: int):
     return [w * (c[i] + (a[i] - x) * (b[i] - y)) for i, w in enumerate(g)]
 
 
-covariance_printed = claim(
-    "13",
-    "(13), last expression as printed, summed over j (two components).",
+CLAIMS = claims(
+    "12* | (12): the mean of the mixture is the sum over i of g^i times the partial mean [I,n = 2,2 3,2 2,3].",
+    lambda: ((sum(finite.mode(s, i) * partial_mean(s, "xi", i) for i in s.I), mean(s, "xi")) for s in every_size()),
+    "13 | (13), last expression as printed, summed over j (two components). | paper: the sum runs over j while "
+    "every factor carries i, as in (11); by hand: g = (3/4, 1/4), X^i = (0, 4), P^i = 0 have the variance 3, the "
+    "print has 1.5 or 4.5",
     lambda: Equation(2 * right_side_of_13(2)[0], covariance(2)),
-    slip="paper",
-    reason="the sum runs over j while every factor carries i, as in (11); by hand: g = (3/4, 1/4), X^i = (0, 4), "
-    "P^i = 0 have the variance 3, the print has 1.5 or 4.5",
+    "13* | (13), last expression summed over i: covariance of a mixture of 1 to 6 components, any dimension.",
+    lambda: Equation([sum(right_side_of_13(n)) for n in range(1, 7)], [covariance(n) for n in range(1, 7)]),
 )
 
 
-@claim("13*")
-def covariance_sum():
-    """(13), last expression summed over i: covariance of a mixture of 1 to 6 components, any dimension."""
-    sizes = range(1, 7)
-    return Equation([sum(right_side_of_13(n)) for n in sizes], [covariance(n) for n in sizes])
-
-
-@claim("13.every")
+@claim("13.every | (13) for any number of components: one term, expanded, is linear in g, g a, g b and g (P + a b).")
 def covariance_of_any_number():
-    """(13) for any number of components: one term, expanded, is linear in g, g a, g b and g (P + a b).
-
-    Summed with sum g = 1, sum g a = X, sum g b = Y it leaves E[xi eta] - X Y, whatever the number.
-    """
+    # Summed with sum g = 1, sum g a = X, sum g b = Y it leaves E[xi eta] - X Y, whatever the number.
     g, a, b, c, X, Y, S = sp.symbols("g a b c X Y S", real=True)
     term = g * (c + (a - X) * (b - Y))
     by_parts = g * (c + a * b) - Y * (g * a) - X * (g * b) + X * Y * g
@@ -101,9 +83,8 @@ def covariance_of_any_number():
     return Equation([term, S - X * Y], [by_parts, summed])
 
 
-@claim("13.densities")
+@claim("13.densities | (13) for posteriors of any form: finite-state densities in place of Gaussian ones [I,n = 2,2].")
 def covariance_of_densities():
-    """(13) for posteriors of any form: finite-state densities in place of Gaussian ones [I,n = 2,2]."""
     for s in (step(2, 2),):
         xi, eta = values(s, "xi"), values(s, "eta")
         X, Y = mean(s, "xi"), mean(s, "eta")
@@ -126,14 +107,12 @@ def expected_product(first, second, i, symbols):
 
 
 @claim(
-    "13.middle",
-    slip="undecidable",
-    reason="the first bracket must be x - X^i like the second, and X(k) the estimate: as printed the spread of the "
-    "partial estimates is counted twice; by hand: g = (1/2, 1/2), X^i = (-1, 1), P^i = 0 have the variance 1, the "
-    "print has 2",
+    "13.middle | (13), middle expression as printed: [x - X] + [X^i - X] beside [x - X^i] + [X^i - X]. | "
+    "undecidable: the first bracket must be x - X^i like the second, and X(k) the estimate: as printed the spread of "
+    "the partial estimates is counted twice; by hand: g = (1/2, 1/2), X^i = (-1, 1), P^i = 0 have the variance 1, "
+    "the print has 2"
 )
 def middle_printed():
-    """(13), middle expression as printed: [x - X] + [X^i - X] beside [x - X^i] + [X^i - X]."""
     g, a, b, c = mixture(2)
     x = sum(w * v for w, v in zip(g, a, strict=True))
     y = sum(w * v for w, v in zip(g, b, strict=True))
@@ -142,9 +121,8 @@ def middle_printed():
     return Equation(printed, covariance(2))
 
 
-@claim("13.middle*")
+@claim("13.middle* | (13), middle expression with both brackets [x - X^i] + [X^i - X] (1 to 4 components).")
 def middle():
-    """(13), middle expression with both brackets [x - X^i] + [X^i - X] (1 to 4 components)."""
     printed = []
     for size in range(1, 5):
         g, a, b, c = mixture(size)
@@ -169,9 +147,8 @@ def accumulate():
     return Equation(printed, [mean_x, product - mean_x * mean_y])
 
 
-@claim("accumulate.all")
+@claim("accumulate.all | 2 to 4 partial estimates added one at a time give (12) and (13).")
 def accumulate_all():
-    """2 to 4 partial estimates added one at a time give (12) and (13)."""
     for size in (2, 3, 4):
         w = [sp.Symbol(f"w_{i}", positive=True) for i in range(size)]
         _, a, b, c = mixture(size)

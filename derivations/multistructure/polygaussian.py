@@ -4,7 +4,7 @@ from itertools import combinations
 
 import sympy as sp
 
-from navsym.claims import PROVED, Equation, claim, fact, state
+from navsym.claims import PROVED, Equation, claim, claims, fact, state
 from navsym.multimodel.exact import ExactStep, Leaf, Model, run_exactly
 from navsym.multimodel.schemes import scheme
 from navsym_papers.multistructure import finite, pulsating
@@ -33,20 +33,17 @@ partial_densities = pulsating.product_of("20", "19", frozen_steps, predicted, ",
 
 
 @claim(
-    "20.integral",
-    slip="undecidable",
-    reason="there are two integral signs and one differential: integrating over x(k) too leaves no function of "
-    "x(k); (15) has one; by hand: without information the print is 1 for every x(k)",
+    "20.integral | (20) with the double integral as printed, over x(k-1) and x(k). | undecidable: there are two "
+    "integral signs and one differential: integrating over x(k) too leaves no function of x(k); (15) has one; by "
+    "hand: without information the print is 1 for every x(k)"
 )
 def double_integral_printed():
-    """(20) with the double integral as printed, over x(k-1) and x(k)."""
     s = frozen_steps()[0]
     return Equation(s.L(0, 0) / rho(s, 0) * sum(predicted(s, 0, x) for x in s.X), finite.partial(s, 0, 0), UNIT(s))
 
 
-@claim("20.integral*")
+@claim("20.integral* | (20) with one integral, for every value of x(k) [I,n = 2,2 3,2 2,3].")
 def single_integral():
-    """(20) with one integral, for every value of x(k) [I,n = 2,2 3,2 2,3]."""
     cases = [(s, i, x) for s in frozen_steps() for i in s.I for x in s.X]
     return Equation(
         [s.L(i, x) / rho(s, i) * predicted(s, i, x) for s, i, x in cases],
@@ -54,30 +51,17 @@ def single_integral():
     )
 
 
-@claim("20.rho")
+@claim("20.rho | Below (20): rho^i is the density of Y(k) given that the mode is i throughout (two modes and states).")
 def likelihood():
-    """Below (20): rho^i is the density of Y(k) given that the mode is i throughout (two modes and states)."""
     s = step(2, 2, 2, entries=finite.distribution, switch=finite.frozen)
     return Equation([rho(s, i) for i in s.I], [finite.mode_likelihood(s, i) for i in s.I])
 
 
-@claim("21")
+@claim("21 | (21): (10) under (19) [I,n = 2,2 3,2 2,3].")
 def mode_probability():
-    """(21): (10) under (19) [I,n = 2,2 3,2 2,3]."""
     for s in frozen_steps():
         below = sp.expand(sum(rho(s, i) * s.modes[i] for i in s.I))
         yield [rho(s, i) * s.modes[i] / below for i in s.I], [finite.mode(s, i) for i in s.I]
-
-
-@claim("21.mixture")
-def mixture():
-    """Below (21): the general formula (11) holds with the weights (21) and the densities (20) [I,n = 2,2 3,2 2,3]."""
-    for s in frozen_steps():
-        below = sp.expand(sum(rho(s, i) * s.modes[i] for i in s.I))
-        yield (
-            sum(s.L(i, 0) * predicted(s, i, 0) * s.modes[i] for i in s.I) / below,
-            s.probability(Y=0, x=0) / s.probability(Y=0),
-        )
 
 
 MODES = [scalar(1, 0, 1, 1), scalar(sp.Rational(1, 2), 1, 1, 1), scalar(1, 4, 1, 9)]
@@ -107,6 +91,20 @@ def living(step: ExactStep) -> list[Leaf]:
     return [leaf for leaf in step.leaves if sum(leaf.weights) != 0]
 
 
+CLAIMS_21 = claims(
+    "21.mixture | Below (21): the general formula (11) holds with the weights (21) and the densities (20) [I,n = "
+    "2,2 3,2 2,3].",
+    lambda: (
+        (
+            sum(s.L(i, 0) * predicted(s, i, 0) * s.modes[i] for i in s.I)
+            / sp.expand(sum(rho(s, i) * s.modes[i] for i in s.I)),
+            s.probability(Y=0, x=0) / s.probability(Y=0),
+        )
+        for s in frozen_steps()
+    ),
+)
+
+
 @claim("19.count")
 def living_sequences():
     """Under (19) only I of the I^(k+1) sequences have a positive probability, at every step (I = 3, k to 3)."""
@@ -134,20 +132,6 @@ def optimal():
     return fact(True, equal, method, PROVED, scope="one model, I = 3, three steps", meaning=meaning)
 
 
-prior = claim(
-    "21.prior",
-    "Below (21): one Gaussian per mode needs I filters; a sum of L common to all modes would need I L (I = 2).",
-    lambda: fact(
-        tuple(2 * L for L in (1, 2, 3)),
-        tuple(len(different_gaussians(L)) for L in (1, 2, 3)),
-        "different Gaussians of the exact tree counted",
-        PROVED,
-        scope="two modes, L = 1..3, one step",
-        meaning=[part for L in (1, 2, 3) for part in (say_sequences(2 * L, 1, 2 * L), say_different(L))],
-    ),
-)
-
-
 def say_different(summands: int) -> dict:
     """That the Gaussians differ, each from each, in mean or variance."""
     pairs = combinations(sorted(different_gaussians(summands), key=str), 2)
@@ -161,3 +145,17 @@ def different_gaussians(summands: int) -> set[tuple[sp.Expr, ...]]:
     roots = [in_mode(i, 2, weight, number, 1) for number in range(summands) for i in (0, 1)]
     (step,) = without_switching("exact", MODES[:2], roots, (2,))
     return {(*leaf.weights, leaf.mean[0], leaf.covariance[0][0]) for leaf in living(step)}
+
+
+CLAIMS_21_2 = claims(
+    "21.prior | Below (21): one Gaussian per mode needs I filters; a sum of L common to all modes would need I L "
+    "(I = 2).",
+    lambda: fact(
+        tuple(2 * L for L in (1, 2, 3)),
+        tuple(len(different_gaussians(L)) for L in (1, 2, 3)),
+        "different Gaussians of the exact tree counted",
+        PROVED,
+        scope="two modes, L = 1..3, one step",
+        meaning=[part for L in (1, 2, 3) for part in (say_sequences(2 * L, 1, 2 * L), say_different(L))],
+    ),
+)

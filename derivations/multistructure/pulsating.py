@@ -5,12 +5,16 @@ from itertools import product
 
 import sympy as sp
 
-from navsym.claims import CERTIFIED, PROVED, Bound, Claim, Equation, Property, claim, fact, state
+from navsym.claims import CERTIFIED, PROVED, Bound, Claim, Equation, Property, claim, claims, fact, state
 from navsym.language.expression import to_text
 from navsym_papers.multistructure import examples, finite
 from navsym_papers.multistructure.finite import Step, step
 from navsym_papers.multistructure.moments import mixture, right_side_of_13
 from navsym_papers.multistructure.recursion import UNIT
+
+modes = sp.Symbol("I", positive=True)
+n = sp.Symbol("n", positive=True)
+square = sp.Symbol("D", nonnegative=True)
 
 
 def forgetful_steps():
@@ -61,16 +65,14 @@ def product_of(
 partial_densities = product_of("15", "14", forgetful_steps, predicted)
 
 
-@claim("16")
+@claim("16 | (16): under (14) rho^i is the density of Y(k) given the mode at k (two modes, two states).")
 def mode_likelihood():
-    """(16): under (14) rho^i is the density of Y(k) given the mode at k (two modes, two states)."""
     s = step(2, 2, 2, entries=finite.distribution, switch=finite.forgetful(2, finite.distribution))
     return Equation([rho(s, i) for i in s.I], [finite.mode_likelihood(s, i) for i in s.I])
 
 
-@claim("17")
+@claim("17 | (17): (10) under (14) [I,n = 2,2 3,2 2,3].")
 def mode_probability():
-    """(17): (10) under (14) [I,n = 2,2 3,2 2,3]."""
     for s in forgetful_steps():
         below = sp.expand(sum(rho(s, i) * s.p(i, 0) for i in s.I))
         yield [rho(s, i) * s.p(i, 0) / below for i in s.I], [finite.mode(s, i) for i in s.I]
@@ -119,27 +121,6 @@ def say_sequences(modes: int, steps: int, count: int) -> dict:
 GRID = [(modes, steps) for modes in (1, 2, 3, 4) for steps in range(6)]
 
 
-number_of_sequences = claim(
-    "count.sequences",
-    "Below (13): up to step k there are I^(k+1) sequences of modes, step 0 included (I to 4, k to 5).",
-    lambda: fact(
-        tuple(modes ** (steps + 1) for modes, steps in GRID),
-        tuple(leaves_by_tree(modes, steps, modes) for modes, steps in GRID),
-        "sequences enumerated",
-        PROVED,
-        scope="I = 1..4, k = 0..5; every step multiplies by I, so for all by induction",
-        meaning=[say_sequences(modes, steps + 1, modes ** (steps + 1)) for modes, steps in GRID],
-    ),
-)
-
-
-@claim("count.growth")
-def growth():
-    """Below (13): the number of sequences grows without bound, if there are two modes or more."""
-    modes, n = sp.Symbol("I", positive=True), sp.Symbol("n", positive=True)
-    return Bound(modes * n - n, ">=", n, {modes: (2, None), n: (1, None)})
-
-
 MODELS = [[examples.CALM, examples.JUMP]] * 4
 SWITCHING = [examples.STICKY] * 4
 
@@ -154,11 +135,23 @@ def differs(first: examples.Estimate, second: examples.Estimate) -> Property:
     return fact(True, True, "ball arithmetic", CERTIFIED, scope=scope, evidence=evidence, meaning=meaning)
 
 
-@claim("17.suboptimal", expect=CERTIFIED)
-def suboptimal():
-    """Below (18): the algorithm is suboptimal: in one model its second estimate differs from the optimal one."""
-    series = [[3], [1]]
-    return differs(*(examples.estimate(MODELS, SWITCHING, series, period) for period in (1, 2)))
+CLAIMS_COUNT = claims(
+    "count.sequences | Below (13): up to step k there are I^(k+1) sequences of modes, step 0 included (I to 4, k "
+    "to 5).",
+    lambda: fact(
+        tuple(modes ** (steps + 1) for modes, steps in GRID),
+        tuple(leaves_by_tree(modes, steps, modes) for modes, steps in GRID),
+        "sequences enumerated",
+        PROVED,
+        scope="I = 1..4, k = 0..5; every step multiplies by I, so for all by induction",
+        meaning=[say_sequences(modes, steps + 1, modes ** (steps + 1)) for modes, steps in GRID],
+    ),
+    "count.growth | Below (13): the number of sequences grows without bound, if there are two modes or more.",
+    lambda: Bound(modes * n - n, ">=", n, {modes: (2, None), n: (1, None)}),
+    "17.suboptimal | Below (18): the algorithm is suboptimal: in one model its second estimate differs from the "
+    "optimal one. | CERTIFIED",
+    lambda: differs(*(examples.estimate(MODELS, SWITCHING, [[3], [1]], period) for period in (1, 2))),
+)
 
 
 @claim("17.first")
@@ -194,14 +187,12 @@ def excess_of_two():
 
 
 @claim(
-    "near",
-    slip="paper",
-    reason="g^i near one is not enough: a mode of probability epsilon at the distance 1/sqrt(epsilon) makes the "
-    "Gaussian approximation arbitrarily bad while g tends to one; the distance must be bounded; by hand: epsilon "
-    "d^2 = 1 leaves the variance 2 and a fourth cumulant near 1/epsilon",
+    "near | The error of the Gaussian approximation vanishes when g^i tends to one for one mode. | paper: g^i near "
+    "one is not enough: a mode of probability epsilon at the distance 1/sqrt(epsilon) makes the Gaussian "
+    "approximation arbitrarily bad while g tends to one; the distance must be bounded; by hand: epsilon d^2 = 1 "
+    "leaves the variance 2 and a fourth cumulant near 1/epsilon"
 )
 def near_optimal():
-    """The error of the Gaussian approximation vanishes when g^i tends to one for one mode."""
     method, evidence = "limit of the exact excess kurtosis", "the excess tends to 1"
     scope = "g = 1 - 1/x^2, unit Gaussians sqrt(x) apart, x -> oo"
     x = sp.Symbol("x", positive=True)
@@ -210,20 +201,17 @@ def near_optimal():
     return fact(True, sp.limit(close, x, sp.oo) == 0, method, PROVED, scope=scope, evidence=evidence, meaning=meaning)
 
 
-@claim("near*")
-def near_optimal_corrected():
-    """With unit variances and the modes a bounded distance d apart the excess is at most epsilon d^4 (epsilon <= 1/10).
-
-    Divided by epsilon d^4 and cleared of the denominator; D = d^2.
-    """
-    square = sp.Symbol("D", nonnegative=True)
-    spread = share * (1 - share)
-    return Bound(
-        (1 - share) * (1 - 6 * spread),
+CLAIMS_NEAR = claims(
+    # Divided by epsilon d^4 and cleared of the denominator; D = d^2.
+    "near* | With unit variances and the modes a bounded distance d apart the excess is at most epsilon d^4 "
+    "(epsilon <= 1/10).",
+    lambda: Bound(
+        (1 - share) * (1 - 6 * (share * (1 - share))),
         "<=",
-        (1 + spread * square) ** 2,
+        (1 + share * (1 - share) * square) ** 2,
         {share: (0, sp.Rational(1, 10)), square: (0, None)},
-    )
+    ),
+)
 
 
 @claim("near.spread")
@@ -270,14 +258,12 @@ def first_mode_in_the_sums() -> tuple[sp.Matrix, list[sp.Expr]]:
 
 
 @claim(
-    "17.memory",
-    slip="paper",
-    reason="beside the probabilities of (17) the sums of (12) and (13) that are being built must be kept, while every "
-    "model starts from the same estimate; by hand: one state and two modes need a mean and a variance more, 4 "
-    "numbers and not 2",
+    "17.memory | Pulsating needs more memory than Kalman only for (17): the mean of a mode that is done does not "
+    "enter X and P. | paper: beside the probabilities of (17) the sums of (12) and (13) that are being built must be "
+    "kept, while every model starts from the same estimate; by hand: one state and two modes need a mean and a "
+    "variance more, 4 numbers and not 2"
 )
 def probabilities_are_enough():
-    """Pulsating needs more memory than Kalman only for (17): the mean of a mode that is done does not enter X and P."""
     sums, (_, mean, _) = first_mode_in_the_sums()
     return Equation([0, 0], list(sums[1:, :].diff(mean)))
 

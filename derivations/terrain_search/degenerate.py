@@ -9,7 +9,7 @@ from itertools import combinations
 
 import sympy as sp
 
-from navsym.claims import Bound, Equation, claim
+from navsym.claims import Bound, Equation, claim, claims
 from navsym_papers.terrain_search.model import inverse, moment, slopes
 
 s = sp.symbols("s0:6", real=True)
@@ -42,17 +42,15 @@ def four(points: list, at: tuple) -> sp.Expr:
     return first + bracket(g1, g4) * bracket(g2, g3) * (t1 - t2) * (t4 - t3)
 
 
-@claim("joint.four")
-def four_measurements():
-    """Four measurements fail to fix the four unknowns just when slope directions and times have one cross-ratio.
-
-    Their determinant is [12][34](t1 - t4)(t2 - t3) + [14][23](t1 - t2)(t4 - t3), [ij] the area between two slopes.
-    """
-    points = slopes(3)
-    return Equation(
-        four(points, times),
-        sp.Matrix.vstack(*(row(g, t) for g, t in zip(points, times, strict=True))).det(method="berkowitz"),
-    )
+CLAIMS_JOINT = claims(
+    # Their determinant is [12][34](t1 - t4)(t2 - t3) + [14][23](t1 - t2)(t4 - t3), [ij] the area between two slopes.
+    "joint.four | Four measurements fail to fix the four unknowns just when slope directions and times have one "
+    "cross-ratio.",
+    lambda: Equation(
+        four(slopes(3), times),
+        sp.Matrix.vstack(*(row(g, t) for g, t in zip(slopes(3), times, strict=True))).det(method="berkowitz"),
+    ),
+)
 
 
 @claim("joint.determinant")
@@ -78,19 +76,6 @@ def unseen(points: list, position: sp.Matrix, velocity: sp.Matrix) -> Equation:
     return Equation([sp.Integer(0)] * 4, list(joint_information(points) * error))
 
 
-# Slopes s_k (x_k - summit) with free s_k; the error is c = R x_0, v = R V, R the quarter turn.
-hill_of_revolution = claim(
-    "joint.hill",
-    "Over a hill of revolution of any profile, a turn about its summit is not seen: no search finds all four numbers.",
-    lambda: unseen([tuple(s[k] * place(k)) for k in range(LONGEST)], TURN * start, TURN * move),
-)
-fan = claim(
-    "joint.fan",
-    "Over ground that keeps its height along the rays from a point, a stretch from that point is not seen.",
-    lambda: unseen([tuple(s[k] * TURN * place(k)) for k in range(LONGEST)], start, move),
-)
-
-
 def quadratic_ground() -> tuple[sp.Matrix, sp.Matrix]:
     """Slope at the start and its change from one measurement to the next: Hessian times V, both free."""
     return sp.Matrix(sp.symbols("b_x b_y", real=True)), sp.Matrix(sp.symbols("w_x w_y", real=True))
@@ -99,6 +84,16 @@ def quadratic_ground() -> tuple[sp.Matrix, sp.Matrix]:
 def quadratic_points(count: int) -> list:
     b, w = quadratic_ground()
     return [tuple(b + k * w) for k in range(count)]
+
+
+CLAIMS_JOINT_2 = claims(
+    # Slopes s_k (x_k - summit) with free s_k; the error is c = R x_0, v = R V, R the quarter turn.
+    "joint.hill | Over a hill of revolution of any profile, a turn about its summit is not seen: no search finds "
+    "all four numbers.",
+    lambda: unseen([tuple(s[k] * place(k)) for k in range(LONGEST)], TURN * start, TURN * move),
+    "joint.fan | Over ground that keeps its height along the rays from a point, a stretch from that point is not seen.",
+    lambda: unseen([tuple(s[k] * TURN * place(k)) for k in range(LONGEST)], start, move),
+)
 
 
 @claim("joint.quadratic")
@@ -119,9 +114,9 @@ def second_stage_is_blind():
     return Equation([sp.Integer(0)] * 2, list((M2 - M1 * inverse(G) * M1) * TURN * w))
 
 
-cubic_ground_is_enough = claim(
-    "joint.cubic",
-    "Cubic ground is enough: flown along x over the heights x + x^2 y, four measurements fix all four numbers.",
+CLAIMS_JOINT_3 = claims(
+    "joint.cubic | Cubic ground is enough: flown along x over the heights x + x^2 y, four measurements fix all "
+    "four numbers.",
     lambda: Bound(
         joint_information([(sp.Integer(1), sp.Integer(k) ** 2) for k in range(4)]).det(method="berkowitz"),
         ">",

@@ -2,20 +2,10 @@
 
 import sympy as sp
 
-from navsym.claims import PROVED, Claim, Equation, claim, fact, state
+from navsym.claims import PROVED, Claim, Equation, claim, claims, fact, state
 from navsym.language.expression import to_text
-from navsym_papers.terrain_search.model import (
-    SIZES,
-    beta_x,
-    beta_y,
-    crossing_time,
-    misfit,
-    moment,
-    slopes,
-    speed,
-    step,
-    t,
-)
+from navsym_papers.terrain_search import model
+from navsym_papers.terrain_search.model import SIZES, beta_x, beta_y, crossing_time, moment, slopes, speed, step, t
 
 DIRECTION = (beta_x, beta_y)
 #: The quadratic is decided on tracks of these sizes; every printed sum runs over pairs of points, so
@@ -30,21 +20,12 @@ def quotient(points, way=DIRECTION):
     return sum(k * s for k, s in enumerate(squares)) / sum(squares)
 
 
-@claim(
-    "11",
-    slip="paper",
-    reason="the numerator carries a factor Delta s that (10) and the range [0, n] exclude: it would be a length; by "
-    "hand: two equal slopes make t_G = 1/2, the print half of 50 m",
-)
-def crossing_as_printed():
-    """t_G for a velocity error in two directions, as printed."""
-    points = slopes(1)
-    return Equation(step * quotient(points), crossing_time(points, DIRECTION))
-
-
-crossing = claim(
-    "11*",
-    "t_G for a velocity error in two directions: a Rayleigh quotient.",
+CLAIMS_11 = claims(
+    "11 | t_G for a velocity error in two directions, as printed. | paper: the numerator carries a factor Delta s "
+    "that (10) and the range [0, n] exclude: it would be a length; by hand: two equal slopes make t_G = 1/2, the "
+    "print half of 50 m",
+    lambda: Equation(step * quotient(slopes(1)), crossing_time(slopes(1), DIRECTION)),
+    "11* | t_G for a velocity error in two directions: a Rayleigh quotient.",
     lambda: Equation(
         [quotient(slopes(size)) for size in SIZES], [crossing_time(slopes(size), DIRECTION) for size in SIZES]
     ),
@@ -82,7 +63,7 @@ def crossing_depends_on_the_direction():
 def say_least(points: list, way: tuple, crossing: int) -> tuple[dict, ...]:
     """That the criterion, over slopes of one and zero, is a square of t less one crossing: least there alone."""
     symbols = {step.name: ["0", None, ["open-low"]], t.name: [None, None, []]}
-    return (state(to_text(misfit(points, way, t)), "=", f"({step}*({t} - {crossing}))**2", symbols),)
+    return (state(to_text(model.misfit(points, way, t)), "=", f"({step}*({t} - {crossing}))**2", symbols),)
 
 
 # Equations (12) and (13): the sums, entry by entry
@@ -175,9 +156,8 @@ SUMS = (
 )
 
 
-@claim("12.linear")
+@claim("12.linear | The double sums are differences of products of single sums: six numbers, O(n) operations.")
 def sums_in_one_pass():
-    """The double sums are differences of products of single sums: six numbers, O(n) operations."""
     for size in SIZES:
         G0, G1 = moment(slopes(size), 0), moment(slopes(size), 1)
         yield (
@@ -234,29 +214,20 @@ def derivatives(number, names, variable, other, sign):
 
 derivatives_by_x = derivatives("12", ("Ax2*", "Ax1", "Ax0*"), beta_x, beta_y, "-")
 derivatives_by_y = derivatives("13", ("Ay2", "Ay1", "Ay0*"), beta_y, beta_x, "")
-opposite_sums = claim(
-    "13.sign",
-    "A_x2 = -A_y2 and A_x1 = -A_y1.",
+
+
+CLAIMS_13 = claims(
+    "13.sign | A_x2 = -A_y2 and A_x1 = -A_y1.",
     lambda: Equation(
         [-a for name in ("Ay2", "Ay1") for a in printed_sums(name)], [from_x(s)[k] for k in (0, 1) for s in PAIRS]
     ),
-)
-opposite_sums_0_as_printed = claim(
-    "13.sign0",
-    "A_x0 = -A_y0, with A_y0 as printed.",
+    "13.sign0 | A_x0 = -A_y0, with A_y0 as printed. | undecidable: with A_y0 as printed the two sums are not "
+    "opposite: both brackets are misprinted, differently; by hand: slopes (0, 1), (1, 1) make A_x0 = 1 and the "
+    "printed A_y0 = 0",
     lambda: Equation([-a for a in printed_sums("Ay0")], [from_x(size)[2] for size in PAIRS]),
-    slip="undecidable",
-    reason="with A_y0 as printed the two sums are not opposite: both brackets are misprinted, differently; by hand: "
-    "slopes (0, 1), (1, 1) make A_x0 = 1 and the printed A_y0 = 0",
-)
-opposite_sums_0 = claim(
-    "13.sign0*",
-    "A_x0 = -A_y0, with both sums as the derivatives give them.",
+    "13.sign0* | A_x0 = -A_y0, with both sums as the derivatives give them.",
     lambda: Equation([-a for a in printed_sums("Ay0*")], [from_x(size)[2] for size in PAIRS]),
-)
-one_equation = claim(
-    "13.same",
-    "Both conditions are one equation: beta_x d/dbeta_x and -beta_y d/dbeta_y of t_G are equal.",
+    "13.same | Both conditions are one equation: beta_x d/dbeta_x and -beta_y d/dbeta_y of t_G are equal.",
     lambda: Equation(
         [-beta_y * derivative(slopes(size), beta_y) for size in SIZES],
         [beta_x * derivative(slopes(size), beta_x) for size in SIZES],

@@ -2,9 +2,11 @@
 
 import sympy as sp
 
-from navsym.claims import OPEN, PROVED, UNDECIDED, Bound, Equation, claim, fact, state
+from navsym.claims import OPEN, PROVED, UNDECIDED, Bound, Equation, claim, claims, fact, state
 from navsym_papers.terrain_search.directions import quotient, say_least
 from navsym_papers.terrain_search.model import beta_x, beta_y, crossing_time, inverse, moment, slopes, symmetric
+
+u = sp.Symbol("u", real=True)
 
 G, M = symmetric("G"), symmetric("M")
 a, b = sp.symbols("a b", positive=True)
@@ -30,20 +32,17 @@ def slope_at_the_axis(size):
     return sp.cancel(sp.diff(quotient(slopes(size)), beta_y).subs(beta_y, 0))
 
 
-axis_as_printed = claim(
-    "case1",
-    "Read as a case of the solution: beta_y = 0 always solves the necessary conditions.",
+CLAIMS_CASE1 = claims(
+    "case1 | Read as a case of the solution: beta_y = 0 always solves the necessary conditions. | paper: read as a "
+    "case of solving (12), (13), which is how it is introduced: at beta_y = 0 only the derivative by beta_x "
+    "vanishes, and t_G is stationary there if and only if A_2 = 0; its value is right (case1.value); by hand: "
+    "slopes (1, 0), (1, 1) at beta = (1, 0): the derivative is 1/2",
     lambda: Equation(sp.Integer(0), slope_at_the_axis(1)),
-    slip="paper",
-    reason="read as a case of solving (12), (13), which is how it is introduced: at beta_y = 0 only the derivative "
-    "by beta_x vanishes, and t_G is stationary there if and only if A_2 = 0; its value is right (case1.value); by "
-    "hand: slopes (1, 0), (1, 1) at beta = (1, 0): the derivative is 1/2",
 )
 
 
-@claim("case1*")
+@claim("case1* | At beta_y = 0 the derivative of t_G by beta_y is -2 A_2 / (beta_x (sum h_x^2)^2).")
 def axis():
-    """At beta_y = 0 the derivative of t_G by beta_y is -2 A_2 / (beta_x (sum h_x^2)^2)."""
     printed = []
     for size in (1, 2):
         points = slopes(size)
@@ -63,9 +62,8 @@ def roots_of_the_quadratic():
     return Equation([sp.Integer(0)] * 2 + [root**2], [*value, A1**2 - 4 * A2 * A0])
 
 
-@claim("roots.both")
+@claim("roots.both | The directions (beta_x : beta_y) that solve it are two: here the axes, with t_G = 0 and 1.")
 def two_directions():
-    """The directions (beta_x : beta_y) that solve it are two: here the axes, with t_G = 0 and 1."""
     points, axes = [(1, 0), (0, 1)], ((1, 0), (0, 1))
     A2, A1, A0 = form_sums(moment(points, 0), moment(points, 1))
     found = (A2, A0, *(crossing_time(points, way) for way in axes))
@@ -76,9 +74,8 @@ def two_directions():
     return fact((0, 0, 0, 1), tuple(map(int, found)), method, PROVED, meaning=meaning)
 
 
-@claim("roots.values")
+@claim("roots.values | (v'Gv) M1 v - (v'M1 v) G v = W (beta_y, -beta_x): where W = 0, v is an eigenvector of G^-1 M1.")
 def a_root_is_an_eigenvector():
-    """(v'Gv) M1 v - (v'M1 v) G v = W (beta_y, -beta_x): where W = 0, v is an eigenvector of G^-1 M1."""
     v = sp.Matrix([beta_x, beta_y])
     A2, A1, A0 = form_sums(G, M)
     W = A2 * beta_x**2 + A1 * beta_x * beta_y + A0 * beta_y**2
@@ -108,9 +105,8 @@ def always_solvable():
     return Equation(squares, [g**2 * (A1**2 - 4 * A2 * A0) for g, _ in ends])
 
 
-@claim("roots.gram")
+@claim("roots.gram | det G is a sum of squares over pairs of points, so the discriminant is never negative.")
 def information_is_not_negative():
-    """det G is a sum of squares over pairs of points, so the discriminant is never negative."""
     printed = []
     for size in (1, 2, 3):
         g = slopes(size)
@@ -119,9 +115,8 @@ def information_is_not_negative():
     return Equation(printed, [moment(slopes(size), 0).det() for size in (1, 2, 3)])
 
 
-@claim("flat")
+@claim("flat | On terrain that slopes along one direction only, A_2 = A_1 = A_0 = 0: the quadratic says nothing.")
 def slopes_of_one_direction():
-    """On terrain that slopes along one direction only, A_2 = A_1 = A_0 = 0: the quadratic says nothing."""
     c = sp.Symbol("c", real=True)
     found = []
     for size in (1, 2, 3):
@@ -152,28 +147,26 @@ BOX = {a: (2, 3), b: (sp.Rational(1, 2), 1)}
 
 
 @claim(
-    "mean",
-    slip="paper",
-    reason="t_G is not spread evenly over [t_min, t_max] when the direction is uniform: the direction with the "
+    "mean | The mean of t_G over a uniform direction is the middle of [t_min, t_max], half the trace of G^-1 M1. | "
+    "paper: t_G is not spread evenly over [t_min, t_max] when the direction is uniform: the direction with the "
     "larger slopes counts for more; equal only when both slopes are equally strong; by hand: G = diag(4, 1), M1 = "
-    "diag(4, 0): the middle of [0, 1] is 1/2, the mean 2/3",
+    "diag(4, 0): the middle of [0, 1] is 1/2, the mean 2/3"
 )
 def middle_as_printed():
-    """The mean of t_G over a uniform direction is the middle of [t_min, t_max], half the trace of G^-1 M1."""
     centre = inverse(sp.diag(a**2, b**2)) * M
     return Equation((centre[0, 0] + centre[1, 1]) / 2, mean_over_directions(), BOX)
 
 
-@claim("mean*")
-def mean():
-    """The mean of t_G over a uniform direction is tr(G^-1/2 M1) / tr(G^1/2)."""
-    root = sp.diag(a, b)
-    return Equation((inverse(root) * M).trace() / root.trace(), mean_over_directions(), nonzero=(a - b,))
+CLAIMS_MEAN = claims(
+    "mean* | The mean of t_G over a uniform direction is tr(G^-1/2 M1) / tr(G^1/2).",
+    lambda: Equation(
+        (inverse(sp.diag(a, b)) * M).trace() / sp.diag(a, b).trace(), mean_over_directions(), nonzero=(a - b,)
+    ),
+)
 
 
-@claim("mean.rotated")
+@claim("mean.rotated | In any axes it is (tr(adj(G) M1) + s tr M1) / (s (tr G + 2 s)), s = sqrt(det G).")
 def mean_in_any_axes():
-    """In any axes it is (tr(adj(G) M1) + s tr M1) / (s (tr G + 2 s)), s = sqrt(det G)."""
     angle = sp.Symbol("phi", real=True)
     R = sp.Matrix([[sp.cos(angle), -sp.sin(angle)], [sp.sin(angle), sp.cos(angle)]])
     turned, moments = R * sp.diag(a**2, b**2) * R.T, R * M * R.T
@@ -183,18 +176,16 @@ def mean_in_any_axes():
     return Equation(printed, (M[0, 0] / a + M[1, 1] / b) / (a + b))
 
 
-@claim("mean.primitives")
-def primitives():
-    """The two integrals of the mean: primitives arctan(u) and arctan(b u / a) / (a b)."""
-    u = sp.Symbol("u", real=True)
-    return Equation(
+CLAIMS_MEAN_2 = claims(
+    "mean.primitives | The two integrals of the mean: primitives arctan(u) and arctan(b u / a) / (a b).",
+    lambda: Equation(
         [sp.diff(sp.atan(u), u), sp.diff(sp.atan(b * u / a) / (a * b), u)], [1 / (1 + u**2), 1 / (a**2 + b**2 * u**2)]
-    )
+    ),
+)
 
 
-@claim("middle.trace")
+@claim("middle.trace | The roots of det(M1 - t G) add up to tr(G^-1 M1); their difference squared is D / det(G)^2.")
 def middle_is_half_the_trace():
-    """The roots of det(M1 - t G) add up to tr(G^-1 M1); their difference squared is D / det(G)^2."""
     t = sp.Symbol("t", real=True)
     quadratic = sp.Poly(sp.expand((M - t * G).det()), t)
     c2, c1, c0 = quadratic.all_coeffs()
@@ -204,20 +195,6 @@ def middle_is_half_the_trace():
     )
 
 
-width_in_the_figure = claim(
-    "interval.tenth",
-    "In the experiment of figure 4 the interval [t_min, t_max] is at most a tenth of the track.",
-    lambda: fact(
-        True,
-        UNDECIDED,
-        "reading",
-        OPEN,
-        evidence="neither figure 4 nor the terrain of figure 3 is in the text: the interval cannot be computed again",
-    ),
-    expect=OPEN,
-)
-
-
 def width_of_an_example():
     """Width over n for one slope along (1, 2) at the start and one across it at the end."""
     points = [(1, 2), *[(0, 0)] * 9, (2, -1)]
@@ -225,12 +202,20 @@ def width_of_an_example():
     return sp.sqrt(A1**2 - 4 * A2 * A0) / moment(points, 0).det() / 10
 
 
-width = claim(
-    "interval.whole",
-    "On other terrain the interval [t_min, t_max] may be the whole track.",
+CLAIMS_INTERVAL = claims(
+    "interval.tenth | In the experiment of figure 4 the interval [t_min, t_max] is at most a tenth of the track. | "
+    "OPEN",
+    lambda: fact(
+        True,
+        UNDECIDED,
+        "reading",
+        OPEN,
+        evidence="neither figure 4 nor the terrain of figure 3 is in the text: the interval cannot be computed again",
+    ),
+    "interval.whole | On other terrain the interval [t_min, t_max] may be the whole track. | note: the tenth of "
+    "the track is printed for figure 4 only; where the terrain slopes one way in one part of the track and across "
+    "it in the other, [t_min, t_max] is the whole track",
     lambda: Equation(sp.Integer(1), width_of_an_example()),
-    reason="the tenth of the track is printed for figure 4 only; where the terrain slopes one way in one part of the "
-    "track and across it in the other, [t_min, t_max] is the whole track",
 )
 
 

@@ -8,7 +8,7 @@ from fractions import Fraction
 
 import sympy as sp
 
-from navsym.claims import PROVED, Equation, claim, fact, state
+from navsym.claims import PROVED, Equation, claim, claims, fact, state
 from navsym_papers.terrain_search.model import free_motion, inverse, slopes, symmetric
 
 G, M1, M2 = symmetric("G"), symmetric("M"), symmetric("N")
@@ -25,29 +25,20 @@ def at_the_end(fix, velocity):
     return free_motion(tn - tG, fix, velocity, 0)
 
 
-refined_x = claim(
-    "8.x",
-    "The refined error along x at the last time.",
+CLAIMS_8 = claims(
+    "8.x | The refined error along x at the last time.",
     lambda: Equation(fix_x + Vi * DVx * (tn - tG), at_the_end(fix_x, Vi * DVx)[0]),
-)
-refined_y_as_printed = claim(
-    "8.y",
-    "The refined error along y at the last time, as printed.",
+    "8.y | The refined error along y at the last time, as printed. | undecidable: the first sign is a product: "
+    "(14) and the formula for x beside it have a sum; by hand: 100 m and 2 m/s after 10 s are 120 m, the print has "
+    "2000 m^2",
     lambda: Equation(fix_y * Vj * DVy * (tn - tG), at_the_end(fix_y, Vj * DVy)[0]),
-    slip="undecidable",
-    reason="the first sign is a product: (14) and the formula for x beside it have a sum; by hand: 100 m and 2 m/s "
-    "after 10 s are 120 m, the print has 2000 m^2",
-)
-refined_y = claim(
-    "8.y*",
-    "The refined error along y at the last time.",
+    "8.y* | The refined error along y at the last time.",
     lambda: Equation(fix_y + Vj * DVy * (tn - tG), at_the_end(fix_y, Vj * DVy)[0]),
 )
 
 
-@claim("14.position")
+@claim("14.position | The corrected position at the last time.")
 def final_position():
-    """The corrected position at the last time."""
     x, y, i, j = sp.symbols("x y i j", real=True)
     return Equation(
         [x + Dx * i + DVx * Vi * (tn - tG), y + Dy * j + DVy * Vj * (tn - tG)],
@@ -55,9 +46,8 @@ def final_position():
     )
 
 
-@claim("14.velocity")
+@claim("14.velocity | The corrected velocity at the last time.")
 def final_velocity():
-    """The corrected velocity at the last time."""
     Vx, Vy = sp.symbols("Vx Vy", real=True)
     return Equation(
         [Vx + DVx * Vi, Vy + DVy * Vj], [Vx + at_the_end(fix_x, DVx * Vi)[1], Vy + at_the_end(fix_y, DVy * Vj)[1]]
@@ -74,28 +64,12 @@ def schur():
     return M2 - M1 * inverse(G) * M1
 
 
-@claim("centre")
+@claim("centre | A velocity error v moves the position fix by C v, C = G^-1 M1: the criterion is stationary there.")
 def coarse_fix():
-    """A velocity error v moves the position fix by C v, C = G^-1 M1: the criterion is stationary there."""
     c = sp.Matrix(sp.symbols("c_x c_y", real=True))
     criterion = (c.T * G * c - 2 * c.T * M1 * v)[0]  # sum (g'(c - k v))^2 up to what is free of c
     at_fix = dict(zip(c, centre() * v, strict=True))
     return Equation([sp.Integer(0)] * 2, [sp.diff(criterion, s).subs(at_fix, simultaneous=True) for s in c])
-
-
-crossing_as_printed = claim(
-    "crossing.exists",
-    "The coarse track meets the true one at some t: the displacement C v - t v vanishes for t = t_G.",
-    lambda: Equation([sp.Integer(0)] * 2, list(centre() * v - ((v.T * M1 * v)[0] / (v.T * G * v)[0]) * v)),
-    slip="paper",
-    reason="in two dimensions C v is not along v in general, so that the two tracks are in one place at no instant, "
-    "unless v is an eigenvector of C; by hand: C = diag(0, 1), v = (1, 1): (0, 1) - t (1, 1) never vanishes",
-)
-crossing_in_the_mean = claim(
-    "crossing.exists*",
-    "At t_G the displacement C v - t_G v is orthogonal to v in the metric G: the tracks pass, not meet.",
-    lambda: Equation(sp.Integer(0), (v.T * G * (centre() * v - ((v.T * M1 * v)[0] / (v.T * G * v)[0]) * v))[0]),
-)
 
 
 def sequential_normal(t):
@@ -123,6 +97,18 @@ def say_least(values: list[Fraction], least: Fraction) -> list[dict]:
     """That no value is smaller, and one is equal."""
     product = "*".join(f"({value} - {least})" for value in values)
     return [*(state(str(value), ">=", str(least)) for value in values), state(product, "=", "0")]
+
+
+CLAIMS_CROSSING = claims(
+    "crossing.exists | The coarse track meets the true one at some t: the displacement C v - t v vanishes for t = "
+    "t_G. | paper: in two dimensions C v is not along v in general, so that the two tracks are in one place at no "
+    "instant, unless v is an eigenvector of C; by hand: C = diag(0, 1), v = (1, 1): (0, 1) - t (1, 1) never "
+    "vanishes",
+    lambda: Equation([sp.Integer(0)] * 2, list(centre() * v - ((v.T * M1 * v)[0] / (v.T * G * v)[0]) * v)),
+    "crossing.exists* | At t_G the displacement C v - t_G v is orthogonal to v in the metric G: the tracks pass, "
+    "not meet.",
+    lambda: Equation(sp.Integer(0), (v.T * G * (centre() * v - ((v.T * M1 * v)[0] / (v.T * G * v)[0]) * v))[0]),
+)
 
 
 @claim("sequential.below")
@@ -178,18 +164,16 @@ def second_stage_about_the_centre():
     )
 
 
-@claim("14.centre")
+@claim("14.centre | The position at t_n is the coarse fix plus (t_n - C) v: the correction that costs nothing.")
 def final_position_from_the_centre():
-    """The position at t_n is the coarse fix plus (t_n - C) v: the correction that costs nothing."""
     position, velocity = two_stages()
     coarse = inverse(G) * b0
     printed = coarse + (tn * sp.eye(2) - centre()) * velocity
     return Equation(list(printed), list(position + tn * velocity))
 
 
-@claim("acceleration")
+@claim("acceleration | On even terrain a constant acceleration a leaves errors a n (n - 1)/12 and a n/2 at the end.")
 def constant_acceleration():
-    """On even terrain a constant acceleration a leaves errors a n (n - 1)/12 and a n/2 at the end."""
     a = sp.Symbol("a", real=True)
     sizes = range(2, 8)
     return Equation(
@@ -240,9 +224,8 @@ def groups_about_their_own_means():
     return Equation(S + m * n * (a - b) ** 2 / (m + n), S + m * (a - whole) ** 2 + n * (b - whole) ** 2)
 
 
-@claim("offset")
+@claim("offset | Without the mean of its differences the criterion is free of a constant height error.")
 def constant_height_error():
-    """Without the mean of its differences the criterion is free of a constant height error."""
     height = sp.Symbol("b", real=True)
     d = sp.symbols("d0:4", real=True)
     mean = sum(d) / 4

@@ -10,7 +10,7 @@ from itertools import pairwise, product
 
 import sympy as sp
 
-from navsym.claims import PROVED, Equation, Property, claim, fact, state
+from navsym.claims import PROVED, Equation, Property, claims, fact, state
 from navsym_papers.trajectory.model import dynamics, first_state, nilpotent_exponential, pascal_rows
 
 N = 3
@@ -58,54 +58,11 @@ def estimator_form(row: sp.Matrix) -> Equation:
     return Equation(list((PHI - K * row) * F + K * z), list(derived))
 
 
-estimator_form_printed = claim(
-    "algorithm.C",
-    "C = Phi^- - K H^0 for any row H^0, as it came out of the scan; n = 3.",
-    lambda: estimator_form(sp.Matrix([sp.symbols(f"h1:{N + 1}", real=True)])),
-    slip="scan",
-    reason="H^0 is defined nowhere: the minus over H of equation 5 came out as a nought; by hand: n = 1, C = 1 - K H^0 "
-    "is 1 - K only for H^0 = 1",
-)
-estimator_form_corrected = claim(
-    "algorithm.C*",
-    "y_(k+1) = C y_k + K z_(k+1) with C = Phi^- - K H^- is prediction and correction; n = 3.",
-    lambda: estimator_form(H_STEP),
-)
-
-
 SCALE = sp.symbols(f"d1:{N + 1}", positive=True)
 NORMALISED = sp.Matrix(sp.symbols(f"y1:{N + 1}", real=True))
 
 
-estimate_printed = claim(
-    "algorithm.estimate",
-    "The estimate of x^q, which is y, is D^-1 y, as it came out of the scan; n = 3.",
-    lambda: Equation(list(sp.diag(*SCALE).inv() * NORMALISED), list(NORMALISED)),
-    slip="scan",
-    reason="one line names y_k the estimate of x^q and then x^q = D^-1 p y_k that of x: the second superscript has "
-    "to be the star that J uses, and the p belongs to no factor; by hand: D = 2, y = 4: x^q is 4, and 2 is x",
-)
-estimate_in_physical_variables = claim(
-    "algorithm.estimate*",
-    "The estimate of x, the solution of D x = y, is x^* = D^-1 y; n = 3.",
-    lambda: Equation(
-        list(sp.diag(*SCALE).inv() * NORMALISED), [own / scale for own, scale in zip(NORMALISED, SCALE, strict=True)]
-    ),
-)
-gain_printed = claim(
-    "algorithm.K",
-    "Gain with the row H^- of equation 5, as printed; n = 3.",
-    lambda: Equation(list(printed_gain()), list(regression_gain()), example_box()),
-    slip="paper",
-    reason="P^- is the matrix of the state after the step, but H^- = H_p D^-1 of equation 5 reads the state before "
-    "it: the row has to be H D^-1, the same slip as in the second measurement equation of 4; by hand: P^- = E, R = 1, "
-    "rows (1, 1) before and (1, 0) after the step: the gain is (1/2, 0), the print has (1/3, 1/3)",
-)
-
-
-@claim("algorithm.K*")
 def gain():
-    """Gain with the row H D^-1, which reads the state after the step; n = 3."""
     row = sp.Matrix([[1] + [0] * (N - 1)])
     return Equation(list(P_AHEAD * row.T / ((row * P_AHEAD * row.T)[0] + R)), list(regression_gain()))
 
@@ -113,16 +70,6 @@ def gain():
 def example_box() -> dict[sp.Symbol, tuple[int, int]]:
     """Positive variances; covariances of either sign, small enough to keep the matrix definite."""
     return {x: ((2, 3) if x == P_AHEAD[i, i] else (-1, 1)) for i in range(N) for x in P_AHEAD[i, i:]}
-
-
-predicted_matrix = claim(
-    "algorithm.P_ahead",
-    "P^- = Phi P Phi^T + Q is the matrix of Phi e + w for independent e and w; n = 3.",
-    lambda: Equation(
-        PHI * P_BEFORE * PHI.T + Q,
-        sp.Matrix(N, N, lambda i, j: covariance(PHI[i, :], PHI[j, :]) + (Q[i, i] if i == j else 0)),
-    ),
-)
 
 
 def covariance(left: sp.Matrix, right: sp.Matrix) -> sp.Expr:
@@ -136,23 +83,40 @@ def matrix_after(gain: sp.Matrix) -> sp.Matrix:
     return rest * P_AHEAD * rest.T + gain * R * gain.T
 
 
-@claim(
-    "algorithm.P",
-    slip="paper",
-    reason="with the row H^- of equation 5 and its gain; by hand, as in algorithm.K: the print has 2/3, -1/3, 2/3 "
+CLAIMS_ALGORITHM = claims(
+    "algorithm.C | C = Phi^- - K H^0 for any row H^0, as it came out of the scan; n = 3. | scan: H^0 is defined "
+    "nowhere: the minus over H of equation 5 came out as a nought; by hand: n = 1, C = 1 - K H^0 is 1 - K only for "
+    "H^0 = 1",
+    lambda: estimator_form(sp.Matrix([sp.symbols(f"h1:{N + 1}", real=True)])),
+    "algorithm.C* | y_(k+1) = C y_k + K z_(k+1) with C = Phi^- - K H^- is prediction and correction; n = 3.",
+    lambda: estimator_form(H_STEP),
+    "algorithm.estimate | The estimate of x^q, which is y, is D^-1 y, as it came out of the scan; n = 3. | scan: "
+    "one line names y_k the estimate of x^q and then x^q = D^-1 p y_k that of x: the second superscript has to be "
+    "the star that J uses, and the p belongs to no factor; by hand: D = 2, y = 4: x^q is 4, and 2 is x",
+    lambda: Equation(list(sp.diag(*SCALE).inv() * NORMALISED), list(NORMALISED)),
+    "algorithm.estimate* | The estimate of x, the solution of D x = y, is x^* = D^-1 y; n = 3.",
+    lambda: Equation(
+        list(sp.diag(*SCALE).inv() * NORMALISED), [own / scale for own, scale in zip(NORMALISED, SCALE, strict=True)]
+    ),
+    "algorithm.K | Gain with the row H^- of equation 5, as printed; n = 3. | paper: P^- is the matrix of the state "
+    "after the step, but H^- = H_p D^-1 of equation 5 reads the state before it: the row has to be H D^-1, the "
+    "same slip as in the second measurement equation of 4; by hand: P^- = E, R = 1, rows (1, 1) before and (1, 0) "
+    "after the step: the gain is (1/2, 0), the print has (1/3, 1/3)",
+    lambda: Equation(list(printed_gain()), list(regression_gain()), example_box()),
+    "algorithm.K* | Gain with the row H D^-1, which reads the state after the step; n = 3.",
+    gain,
+    "algorithm.P_ahead | P^- = Phi P Phi^T + Q is the matrix of Phi e + w for independent e and w; n = 3.",
+    lambda: Equation(
+        PHI * P_BEFORE * PHI.T + Q,
+        sp.Matrix(N, N, lambda i, j: covariance(PHI[i, :], PHI[j, :]) + (Q[i, i] if i == j else 0)),
+    ),
+    "algorithm.P | P = (E - K H^-) P^-, with the printed gain, is the matrix of the corrected error; n = 3. | "
+    "paper: with the row H^- of equation 5 and its gain; by hand, as in algorithm.K: the print has 2/3, -1/3, 2/3 "
     "where the errors have 5/9, -1/9, 11/9",
+    lambda: Equation((sp.eye(N) - printed_gain() * H_STEP) * P_AHEAD, matrix_after(printed_gain()), example_box()),
+    "algorithm.P* | P = (E - K H D^-1) P^- is the matrix of the corrected error, for the gain of algorithm.K*; n = 3.",
+    lambda: Equation((sp.eye(N) - regression_gain() * row_after_step()) * P_AHEAD, matrix_after(regression_gain())),
 )
-def corrected_matrix_printed():
-    """P = (E - K H^-) P^-, with the printed gain, is the matrix of the corrected error; n = 3."""
-    gain = printed_gain()
-    return Equation((sp.eye(N) - gain * H_STEP) * P_AHEAD, matrix_after(gain), example_box())
-
-
-@claim("algorithm.P*")
-def corrected_matrix():
-    """P = (E - K H D^-1) P^- is the matrix of the corrected error, for the gain of algorithm.K*; n = 3."""
-    best = regression_gain()
-    return Equation((sp.eye(N) - best * row_after_step()) * P_AHEAD, matrix_after(best))
 
 
 # -- the field of Q ----------------------------------------------------------------------------------------
@@ -167,19 +131,7 @@ def size_of_field(printed: int) -> Property:
     return fact(printed, len(field(5)), "enumeration", PROVED, scope="n = 5", meaning=(say_field(printed, 5),))
 
 
-field_size_printed = claim(
-    "algorithm.NQ",
-    "Number of values in the field for n = 5, as printed.",
-    lambda: size_of_field(242),
-    slip="undecidable",
-    reason="3^5 = 243: a digit, or one candidate of the field that is not counted",
-)
-field_size = claim("algorithm.NQ*", "Number of values in the field for n = 5.", lambda: size_of_field(243))
-
-
-@claim("algorithm.NQ.power")
 def field_size_power():
-    """The field has 3^n candidates: each of n elements may fall, stay or rise."""
     powers, found = tuple(3**n for n in range(1, 8)), tuple(len(field(n)) for n in range(1, 8))
     meaning = tuple(map(say_field, powers, range(1, 8)))
     return fact(powers, found, "enumeration", PROVED, scope="n = 1..7", meaning=meaning)
@@ -243,28 +195,9 @@ def count_first_terms(counts: tuple[int, int]) -> Property:
     return fact(counts, both, "exact enumeration", PROVED, scope=FIELD_SCOPE, evidence=ends, meaning=meaning)
 
 
-field_values = claim(
-    "algorithm.field",
-    "For one centre and one start the 3^5 candidates give as many values of J (equal elements would merge some).",
-    lambda: count_values(3**5),
-)
-
-
-# The candidates differ in K_(k+1), and so in x*_(k+1); what was estimated before cannot show which of them fits.
-first_term_of_the_criterion = claim(
-    "algorithm.J.first",
-    "With x*_k, as printed, the first term of J is one number for all candidates; with x*_(k+1) it takes 216 values.",
-    lambda: count_first_terms((1, 216)),
-)
-
-
-@claim("algorithm.J.still")
 def criterion_prefers_standing_still():
-    """At constant estimated speed J = (rho tau x_2 + nu)^2 + nu^2 (K_2^2 tau + K_3^2 tau^2): the least gains win.
-
-    nu is the innovation, the same for all candidates. The minimum over a field of Q thus falls on the candidate that
-    corrects speed and acceleration least, step after step, however well or badly it fits.
-    """
+    # nu is the innovation, the same for all candidates. The minimum over a field of Q thus falls on the candidate
+    # that corrects speed and acceleration least, step after step, however well or badly it fits.
     rho, tau = sp.symbols("rho tau", positive=True)
     x1, x2, nu = sp.symbols("x1 x2 nu", real=True)
     K2, K3 = sp.symbols("K2 K3", real=True)
@@ -285,6 +218,27 @@ def values_with_corrected_gain() -> int:
     is why the corrected algorithm carries its candidates through several steps.
     """
     return len(criteria(5, [1, 0, 0, 0, 0], residual_after=True))
+
+
+CLAIMS_ALGORITHM_2 = claims(
+    "algorithm.NQ | Number of values in the field for n = 5, as printed. | undecidable: 3^5 = 243: a digit, or one "
+    "candidate of the field that is not counted",
+    lambda: size_of_field(242),
+    "algorithm.NQ* | Number of values in the field for n = 5.",
+    lambda: size_of_field(243),
+    "algorithm.NQ.power | The field has 3^n candidates: each of n elements may fall, stay or rise.",
+    field_size_power,
+    "algorithm.field | For one centre and one start the 3^5 candidates give as many values of J (equal elements "
+    "would merge some).",
+    lambda: count_values(3**5),
+    # The candidates differ in K_(k+1), and so in x*_(k+1); what was estimated before cannot show which of them fits.
+    "algorithm.J.first | With x*_k, as printed, the first term of J is one number for all candidates; with "
+    "x*_(k+1) it takes 216 values.",
+    lambda: count_first_terms((1, 216)),
+    "algorithm.J.still | At constant estimated speed J = (rho tau x_2 + nu)^2 + nu^2 (K_2^2 tau + K_3^2 tau^2): "
+    "the least gains win.",
+    criterion_prefers_standing_still,
+)
 
 
 # -- units of the criterion --------------------------------------------------------------------------------
@@ -317,26 +271,9 @@ def say_units(speed_power: int, acceleration_power: int, relation: str) -> list[
     return [choose(*pair) for pair in pairwise(terms)]
 
 
-criterion_units = claim(
-    "algorithm.J.units",
-    "The terms of J have three units as printed (m^2, m^2/s, m^2/s^2), and one when weighted by tau^2 and tau^4.",
-    lambda: fact(
-        (((2, -2), (2, -1), (2, 0)), ((2, 0),)),
-        (units_of_terms(1, 2), units_of_terms(2, 4)),
-        "exponents of metre and second",
-        PROVED,
-        meaning=(*say_units(1, 2, ">"), *say_units(2, 4, "=")),
-    ),
-)
-
-
-@claim("algorithm.P.not_covariance")
 def matrix_is_not_the_covariance():
-    """Strictly speaking P is no covariance: with a Q of its own choice it differs from that of the errors; n = 1.
-
-    State x' = x without noise, tuned with q > 0: P tends to K R, K the steady gain, while the error, driven by
-    the measurement noise alone, tends to K R/(2 - K): smaller for every 0 < K < 1.
-    """
+    # State x' = x without noise, tuned with q > 0: P tends to K R, K the steady gain, while the error, driven by the
+    # measurement noise alone, tends to K R/(2 - K): smaller for every 0 < K < 1.
     root = sp.Symbol("K", positive=True)  # steady gain
     matrix, ahead = root * R, root * R / (1 - root)  # P and P^- = P + q, q = K^2 R/(1 - K)
     error = root * R / (2 - root)  # E e^2 = (1 - K)^2 E e^2 + K^2 R
@@ -346,3 +283,19 @@ def matrix_is_not_the_covariance():
         {root: (0, 1)},
         nonzero=(1 - root,),
     )
+
+
+CLAIMS_ALGORITHM_3 = claims(
+    "algorithm.J.units | The terms of J have three units as printed (m^2, m^2/s, m^2/s^2), and one when weighted "
+    "by tau^2 and tau^4.",
+    lambda: fact(
+        (((2, -2), (2, -1), (2, 0)), ((2, 0),)),
+        (units_of_terms(1, 2), units_of_terms(2, 4)),
+        "exponents of metre and second",
+        PROVED,
+        meaning=(*say_units(1, 2, ">"), *say_units(2, 4, "=")),
+    ),
+    "algorithm.P.not_covariance | Strictly speaking P is no covariance: with a Q of its own choice it differs from "
+    "that of the errors; n = 1.",
+    matrix_is_not_the_covariance,
+)

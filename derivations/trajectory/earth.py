@@ -2,7 +2,7 @@
 
 import sympy as sp
 
-from navsym.claims import Equation, claim
+from navsym.claims import Equation, claim, claims
 from navsym_papers.trajectory import ellipsoid
 
 a = sp.Symbol("a", positive=True)  # semi-major axis
@@ -27,36 +27,25 @@ ROOT = sp.sqrt(1 - e**2 * sp.sin(phi_e) ** 2)
 # -- latitude, longitude, radius -------------------------------------------------------------------
 
 
-reference_point_lies_on_the_ellipse = claim(
-    "earth.ellipse",
-    "The foot of the normal satisfies the equation of the meridian ellipse.",
-    lambda: Equation(sp.Integer(1), ellipsoid.ellipse_condition(phi_e, a, e), ELLIPSOID),
-)
-
-
 def geocentric_tangent():
     axis, z = ellipsoid.meridian_point(phi_e, h, a, e)
     return z / axis
 
 
-geocentric_latitude_printed = claim(
-    "earth.tan_phi",
-    "Tangent of the geocentric latitude, as printed.",
+CLAIMS_EARTH = claims(
+    "earth.ellipse | The foot of the normal satisfies the equation of the meridian ellipse.",
+    lambda: Equation(sp.Integer(1), ellipsoid.ellipse_condition(phi_e, a, e), ELLIPSOID),
+    "earth.tan_phi | Tangent of the geocentric latitude, as printed. | undecidable: the exponent of e is lost: at "
+    "h = 0 the factor has to be 1 - e^2, as in the printed radius two lines below; by hand: for e = 0.082 the "
+    "factor 0.918 stands for 0.9933",
     lambda: Equation((1 - a * e / (a + h * ROOT)) * sp.tan(phi_e), geocentric_tangent(), ELLIPSOID),
-    slip="undecidable",
-    reason="the exponent of e is lost: at h = 0 the factor has to be 1 - e^2, as in the printed radius two lines "
-    "below; by hand: for e = 0.082 the factor 0.918 stands for 0.9933",
-)
-geocentric_latitude = claim(
-    "earth.tan_phi*",
-    "Tangent of the geocentric latitude.",
+    "earth.tan_phi* | Tangent of the geocentric latitude.",
     lambda: Equation((1 - a * e**2 / (a + h * ROOT)) * sp.tan(phi_e), geocentric_tangent(), ELLIPSOID),
 )
 
 
-@claim("earth.r")
+@claim("earth.r | Distance from the centre of the Earth, squared; the printed root is the positive one.")
 def geocentric_radius():
-    """Distance from the centre of the Earth, squared; the printed root is the positive one."""
     inner = (a / ROOT + h) ** 2 * sp.cos(phi_e) ** 2 + (a * (1 - e**2) / ROOT + h) ** 2 * sp.sin(phi_e) ** 2
     axis, z = ellipsoid.meridian_point(phi_e, h, a, e)
     # Lengths are equal when their squares are; the root of the sum would hide the angle from the prover.
@@ -70,24 +59,18 @@ def turned(row: int) -> sp.Expr:
     return (ellipsoid.trihedron_turn(phi_e, phi) * sp.Matrix(xi))[row]
 
 
-east_is_common = claim(
-    "earth.rotation.xi1", "East axes of the geodetic and the geocentric trihedron.", lambda: Equation(xi[0], turned(0))
-)
-geodetic_north = claim(
-    "earth.rotation.xi2",
-    "North component in the geodetic trihedron.",
+CLAIMS_EARTH_2 = claims(
+    "earth.rotation.xi1 | East axes of the geodetic and the geocentric trihedron.",
+    lambda: Equation(xi[0], turned(0)),
+    "earth.rotation.xi2 | North component in the geodetic trihedron.",
     lambda: Equation(sp.cos(phi_e - phi) * xi[1] - sp.sin(phi_e - phi) * xi[2], turned(1)),
-)
-geodetic_up = claim(
-    "earth.rotation.xi3",
-    "Component along the normal to the ellipsoid.",
+    "earth.rotation.xi3 | Component along the normal to the ellipsoid.",
     lambda: Equation(sp.sin(phi_e - phi) * xi[1] + sp.cos(phi_e - phi) * xi[2], turned(2)),
 )
 
 
-@claim("earth.rotation.orthogonal")
+@claim("earth.rotation.orthogonal | The transformation between the trihedra is orthogonal and keeps orientation.")
 def rotation_is_orthogonal():
-    """The transformation between the trihedra is orthogonal and keeps orientation."""
     turn = ellipsoid.trihedron_turn(phi_e, phi)
     return Equation([*sp.eye(3), sp.Integer(1)], [*(turn * turn.T), turn.det()])
 
@@ -110,58 +93,34 @@ def rates_from_velocity() -> list[sp.Expr]:
     return list(jacobian.inv() * sp.Matrix(V))
 
 
-angular_velocity_of_the_trihedron = claim(
-    "kinematics.omega",
-    "Angular velocity of the geocentric trihedron relative to the Earth, on its own axes.",
-    lambda: Equation(list(OMEGA), list(ellipsoid.angular_velocity(MOVING))),
-)
-position_on_own_axes = claim(
-    "kinematics.position",
-    "The position vector on the axes of the trihedron is (0, 0, r).",
-    lambda: Equation(
-        [sp.Integer(0), sp.Integer(0), RADIUS], list(ellipsoid.spherical_axes(LATITUDE, MOVING["longitude"]) * POSITION)
-    ),
-)
-
-
 def rotation_part() -> sp.Matrix:
     """e_ikj omega_k r_j."""
     return OMEGA.cross(sp.Matrix([0, 0, RADIUS]))
 
 
-velocity_printed = claim(
-    "kinematics.velocity",
-    "Velocity as omega x r alone, as it came out of the scan.",
+CLAIMS_KINEMATICS = claims(
+    "kinematics.omega | Angular velocity of the geocentric trihedron relative to the Earth, on its own axes.",
+    lambda: Equation(list(OMEGA), list(ellipsoid.angular_velocity(MOVING))),
+    "kinematics.position | The position vector on the axes of the trihedron is (0, 0, r).",
+    lambda: Equation(
+        [sp.Integer(0), sp.Integer(0), RADIUS], list(ellipsoid.spherical_axes(LATITUDE, MOVING["longitude"]) * POSITION)
+    ),
+    "kinematics.velocity | Velocity as omega x r alone, as it came out of the scan. | scan: '= r_i' stands for '+ "
+    "dr_i/dt': as printed the vertical speed vanishes, while dr/dt = V_3",
     lambda: Equation(list(rotation_part()), list(VELOCITY)),
-    slip="scan",
-    reason="'= r_i' stands for '+ dr_i/dt': as printed the vertical speed vanishes, while dr/dt = V_3",
-)
-velocity = claim(
-    "kinematics.velocity*",
-    "Velocity relative to the Earth: omega x r plus the rate of (0, 0, r).",
+    "kinematics.velocity* | Velocity relative to the Earth: omega x r plus the rate of (0, 0, r).",
     lambda: Equation(list(rotation_part() + sp.Matrix([0, 0, RATES[2]])), list(VELOCITY)),
-)
-latitude_rate = claim(
-    "kinematics.phi_rate",
-    "Rate of latitude: northern speed over radius.",
+    "kinematics.phi_rate | Rate of latitude: northern speed over radius.",
     lambda: Equation(V[1] / RADIUS, rates_from_velocity()[0], SHELL),
-)
-longitude_rate_printed = claim(
-    "kinematics.lambda_rate",
-    "Rate of longitude with the cosine as a factor, as it came out of the scan.",
+    "kinematics.lambda_rate | Rate of longitude with the cosine as a factor, as it came out of the scan. | scan: "
+    "cos phi is to the power -1; the lost exponent reappears as the stray minus sign of the printed rho^(2), and "
+    "kinematics.omega with V = omega x r gives V_1 = r cos(phi) d lambda/dt; by hand: at 60 degrees the meridians "
+    "pass twice as fast as at the equator, not half as fast",
     lambda: Equation(V[0] / RADIUS * sp.cos(LATITUDE), rates_from_velocity()[1], SHELL),
-    slip="scan",
-    reason="cos phi is to the power -1; the lost exponent reappears as the stray minus sign of the printed rho^(2), "
-    "and kinematics.omega with V = omega x r gives V_1 = r cos(phi) d lambda/dt; by hand: at 60 degrees the "
-    "meridians pass twice as fast as at the equator, not half as fast",
-)
-longitude_rate = claim(
-    "kinematics.lambda_rate*",
-    "Rate of longitude: eastern speed over the radius of the parallel.",
+    "kinematics.lambda_rate* | Rate of longitude: eastern speed over the radius of the parallel.",
     lambda: Equation(V[0] / (RADIUS * sp.cos(LATITUDE)), rates_from_velocity()[1], SHELL),
-)
-radius_rate = claim(
-    "kinematics.r_rate", "Rate of the radius: vertical speed.", lambda: Equation(V[2], rates_from_velocity()[2], SHELL)
+    "kinematics.r_rate | Rate of the radius: vertical speed.",
+    lambda: Equation(V[2], rates_from_velocity()[2], SHELL),
 )
 
 
@@ -173,26 +132,15 @@ def channel_factor(rate: int, speed: int) -> sp.Expr:
     return sp.diff(rates_from_velocity()[rate], V[speed])
 
 
-latitude_factor = claim(
-    "1.rho1",
-    "rho of the latitude channel, driven by the northern speed.",
+CLAIMS_1 = claims(
+    "1.rho1 | rho of the latitude channel, driven by the northern speed.",
     lambda: Equation(1 / RADIUS, channel_factor(0, 1), SHELL),
-)
-longitude_factor_printed = claim(
-    "1.rho2",
-    "rho of the longitude channel, as it came out of the scan.",
+    "1.rho2 | rho of the longitude channel, as it came out of the scan. | scan: the exponent -1 of cos phi was "
+    "read as a minus sign of the numerator: the printed rate of longitude, two paragraphs above, has no such sign; "
+    "by hand: -1/r at the equator, for a speed to the east",
     lambda: Equation(-1 / RADIUS * sp.cos(LATITUDE), channel_factor(1, 0), SHELL),
-    slip="scan",
-    reason="the exponent -1 of cos phi was read as a minus sign of the numerator: the printed rate of longitude, "
-    "two paragraphs above, has no such sign; by hand: -1/r at the equator, for a speed to the east",
-)
-longitude_factor = claim(
-    "1.rho2*",
-    "rho of the longitude channel, driven by the eastern speed.",
+    "1.rho2* | rho of the longitude channel, driven by the eastern speed.",
     lambda: Equation(1 / (RADIUS * sp.cos(LATITUDE)), channel_factor(1, 0), SHELL),
-)
-radius_factor = claim(
-    "1.rho3",
-    "rho of the radius channel, driven by the vertical speed.",
+    "1.rho3 | rho of the radius channel, driven by the vertical speed.",
     lambda: Equation(sp.Integer(1), channel_factor(2, 2), SHELL),
 )

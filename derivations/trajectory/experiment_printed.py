@@ -6,8 +6,11 @@ from itertools import pairwise
 import flint
 import sympy as sp
 
-from navsym.claims import CERTIFIED, PROVED, Equation, Finding, Property, claim, fact, state
+from navsym.claims import CERTIFIED, PROVED, Equation, Finding, Property, claim, claims, fact, state
 from navsym_papers.trajectory.experiment.stability import exact
+
+x = sp.Symbol("x", real=True)
+antiderivative = sp.Symbol("x", real=True) ** 3 / 3 / (2 * sp.sqrt(3))
 
 RADIUS = Fraction(6371000)
 TAU = Fraction(1, 5)
@@ -16,18 +19,18 @@ TAU = Fraction(1, 5)
 # -- conditions of the experiment ----------------------------------------------------------------------
 
 
-@claim("experiment.sigma")
-def rms_of_the_uniform_error():
-    """An error uniform on [-sqrt(3), sqrt(3)] m has a standard deviation of 1 m."""
-    x = sp.Symbol("x", real=True)
-    end = sp.sqrt(3)
-    antiderivative = x**3 / 3 / (2 * end)
-    return Equation(sp.Integer(1), antiderivative.subs(x, end) - antiderivative.subs(x, -end))
+CLAIMS_EXPERIMENT = claims(
+    "experiment.sigma | An error uniform on [-sqrt(3), sqrt(3)] m has a standard deviation of 1 m.",
+    lambda: Equation(
+        sp.Integer(1),
+        (sp.Symbol("x", real=True) ** 3 / 3 / (2 * sp.sqrt(3))).subs(sp.Symbol("x", real=True), sp.sqrt(3))
+        - (sp.Symbol("x", real=True) ** 3 / 3 / (2 * sp.sqrt(3))).subs(sp.Symbol("x", real=True), -sp.sqrt(3)),
+    ),
+)
 
 
-@claim("experiment.parts")
+@claim("experiment.parts | The three parts [0, 1000), [1000, 2080], (2080, 3600] cover the run once.")
 def three_parts_fill_the_run():
-    """The three parts [0, 1000), [1000, 2080], (2080, 3600] cover the run once."""
     parts = ((0, True, 1000, False), (1000, True, 2080, True), (2080, False, 3600, True))
     meets = all(left[2] == right[0] and left[3] != right[1] for left, right in pairwise(parts))
     found = (parts[0][0], parts[-1][2], meets)
@@ -40,9 +43,9 @@ def three_parts_fill_the_run():
     return fact((0, 3600, True), found, "ends of the parts", PROVED, meaning=meaning)
 
 
-heading = claim(
-    "experiment.heading",
-    "The printed heading leaves the straight course by a jump of 5 cos(80°) degrees at 1000 and 2080 s: three periods.",
+CLAIMS_EXPERIMENT_2 = claims(
+    "experiment.heading | The printed heading leaves the straight course by a jump of 5 cos(80°) degrees at 1000 "
+    "and 2080 s: three periods.",
     lambda: Equation(
         [5 * sp.cos(4 * sp.pi / 9)] * 2 + [3],
         [*[5 * sp.cos(2 * sp.pi * sp.Integer(t) / 360) for t in (1000, 2080)], sp.Rational(2080 - 1000, 360)],
@@ -50,9 +53,8 @@ heading = claim(
 )
 
 
-@claim("experiment.stop")
+@claim("experiment.stop | Tuning stops at 168.8 s, a whole number of steps of 0.2 s.")
 def tuning_stops_at_a_step():
-    """Tuning stops at 168.8 s, a whole number of steps of 0.2 s."""
     steps = Fraction("168.8") / TAU
     return fact(
         True,
@@ -130,18 +132,12 @@ def rate_has(printed: str, quantity: str) -> Property:
     return fact((P, Q), (p, q - 1), method, PROVED, meaning=meaning)
 
 
-speed_error_unit_printed = claim(
-    "experiment.sigma_v.unit",
-    "The error of the speed V_2 at |V| = 100 m/s is a length, printed in metres.",
+CLAIMS_EXPERIMENT_3 = claims(
+    "experiment.sigma_v.unit | The error of the speed V_2 at |V| = 100 m/s is a length, printed in metres. | "
+    "paper: an error of V_2 is in m/s; the same figures for 2 and 300 m/s are printed with m/s",
     lambda: rate_has("m", "m"),
-    slip="paper",
-    reason="an error of V_2 is in m/s; the same figures for 2 and 300 m/s are printed with m/s",
-)
-speed_error_unit = claim(
-    "experiment.sigma_v.unit*", "The error of a speed is in metres per second.", lambda: rate_has("m/s", "m")
-)
-acceleration_error_unit = claim(
-    "experiment.sigma_a.unit",
-    "The error of the acceleration dV_2/dt is in metres per second squared.",
+    "experiment.sigma_v.unit* | The error of a speed is in metres per second.",
+    lambda: rate_has("m/s", "m"),
+    "experiment.sigma_a.unit | The error of the acceleration dV_2/dt is in metres per second squared.",
     lambda: rate_has("m/s^2", "m/s"),
 )

@@ -5,7 +5,7 @@ from itertools import pairwise
 
 import sympy as sp
 
-from navsym.claims import CERTIFIED, PROVED, Bound, Equation, Finding, Property, claim, fact, state
+from navsym.claims import CERTIFIED, PROVED, Bound, Equation, Finding, Property, claim, claims, fact, state
 from navsym.models import earth as motion
 from navsym.trajectory.conditioning import condition_number
 from navsym_papers.trajectory import model
@@ -42,9 +42,8 @@ def rate_of_state(n: int) -> list[sp.Expr]:
 # -- equation 1 --------------------------------------------------------------------------------------
 
 
-@claim("1.degree")
+@claim("1.degree | The speed is a polynomial of degree n - 2 (n = 2 to 8).")
 def degree_of_the_speed():
-    """The speed is a polynomial of degree n - 2 (n = 2 to 8)."""
 
     def speed(n: int) -> sp.Expr:
         return (model.nilpotent_exponential(model.dynamics(n, rho), t) * sp.Matrix(STATE[:n]))[1]
@@ -62,34 +61,20 @@ def degree_of_the_speed():
     return Property(printed=tuple(n - 2 for n in orders), derived=found, meaning=meaning)
 
 
-first_row = claim(
-    "1.row1",
-    "Rate of the coordinate: rho times the speed; n = 8.",
+CLAIMS_1 = claims(
+    "1.row1 | Rate of the coordinate: rho times the speed; n = 8.",
     lambda: Equation(rho * moved_state(ORDER, t)[1], rate_of_state(ORDER)[0]),
-)
-second_row_printed = claim(
-    "1.row2",
-    "Second row, dx_1/dt = x_2, as printed.",
+    "1.row2 | Second row, dx_1/dt = x_2, as printed. | undecidable: both indices are those of the row above: "
+    "dx_1/dt has its equation there; by hand: a latitude in radians does not change at metres per second",
     lambda: Equation(moved_state(ORDER, t)[1], rate_of_state(ORDER)[0]),
-    slip="undecidable",
-    reason="both indices are those of the row above: dx_1/dt has its equation there; by hand: a latitude in "
-    "radians does not change at metres per second",
-)
-second_row = claim(
-    "1.row2*", "Second row: dx_2/dt = x_3; n = 8.", lambda: Equation(moved_state(ORDER, t)[2], rate_of_state(ORDER)[1])
-)
-last_row_printed = claim(
-    "1.rown",
-    "Last row, dx_1/dt = 0, as printed.",
+    "1.row2* | Second row: dx_2/dt = x_3; n = 8.",
+    lambda: Equation(moved_state(ORDER, t)[2], rate_of_state(ORDER)[1]),
+    "1.rown | Last row, dx_1/dt = 0, as printed. | undecidable: the index is that of the first row: the last row "
+    "is that of x_n, whose initial value stands beside it; by hand: a coordinate at rest whatever the speed",
     lambda: Equation(sp.Integer(0), rate_of_state(ORDER)[0]),
-    slip="undecidable",
-    reason="the index is that of the first row: the last row is that of x_n, whose initial value stands beside it; "
-    "by hand: a coordinate at rest whatever the speed",
-)
-last_row = claim("1.rown*", "Last row: dx_n/dt = 0; n = 8.", lambda: Equation(sp.Integer(0), rate_of_state(ORDER)[-1]))
-matrix_form = claim(
-    "1.general",
-    "The general form dx/dt = A x with A of equation 3; n = 8.",
+    "1.rown* | Last row: dx_n/dt = 0; n = 8.",
+    lambda: Equation(sp.Integer(0), rate_of_state(ORDER)[-1]),
+    "1.general | The general form dx/dt = A x with A of equation 3; n = 8.",
     lambda: Equation(list(model.dynamics(ORDER, rho) * sp.Matrix(moved_state(ORDER, t))), rate_of_state(ORDER)),
 )
 
@@ -100,21 +85,6 @@ matrix_form = claim(
 def measured_row(n: int) -> sp.Matrix:
     """Row of the measured coordinate: its gradient in the state."""
     return sp.Matrix([moved_state(n, sp.Integer(0))[0]]).jacobian(STATE[:n])
-
-
-measurement_row_printed = claim(
-    "2.H",
-    "Row of the measurement, printed with three entries for every n; here n = 8.",
-    lambda: Equation(sp.Matrix([[1, 0, 0]]), measured_row(ORDER)),
-    slip="undecidable",
-    reason="H has as many entries as the state: (1, 0, 0) is the case n = 3 only, and after equation 4 it is "
-    "printed as (1, 0, ..., 0)",
-)
-measurement_row = claim(
-    "2.H*",
-    "Row of the measurement: one and n - 1 zeros; here n = 8.",
-    lambda: Equation(sp.Matrix([[1] + [0] * (ORDER - 1)]), measured_row(ORDER)),
-)
 
 
 def powers_of(n: int) -> list[sp.Matrix]:
@@ -137,9 +107,14 @@ def say_powers(n: int) -> tuple[dict, ...]:
     return *products, state(str(powers[-2][0, n - 1]), "!=", "0", RHO)
 
 
-nilpotency = claim(
-    "3.nilpotent",
-    "A is nilpotent of index n (n = 2 to 12).",
+CLAIMS_2 = claims(
+    "2.H | Row of the measurement, printed with three entries for every n; here n = 8. | undecidable: H has as "
+    "many entries as the state: (1, 0, 0) is the case n = 3 only, and after equation 4 it is printed as (1, 0, "
+    "..., 0)",
+    lambda: Equation(sp.Matrix([[1, 0, 0]]), measured_row(ORDER)),
+    "2.H* | Row of the measurement: one and n - 1 zeros; here n = 8.",
+    lambda: Equation(sp.Matrix([[1] + [0] * (ORDER - 1)]), measured_row(ORDER)),
+    "3.nilpotent | A is nilpotent of index n (n = 2 to 12).",
     lambda: fact(
         tuple(n for n in ORDERS),
         tuple(len(powers_of(n)) for n in ORDERS),
@@ -152,9 +127,8 @@ nilpotency = claim(
 )
 
 
-@claim("3.nonzero")
+@claim("3.nonzero | A has n - 1 elements that are not zero (n = 2 to 12).")
 def nonzero_elements():
-    """A has n - 1 elements that are not zero (n = 2 to 12)."""
 
     def say(n: int) -> list[dict]:
         rows = model.dynamics(n, rho).tolist()
@@ -174,9 +148,8 @@ def nonzero_elements():
     )
 
 
-@claim("3.elements")
+@claim("3.elements | A_12 = rho, A_i,i+1 = 1 below, all others zero; here n = 8.")
 def elements_of_A():
-    """A_12 = rho, A_i,i+1 = 1 below, all others zero; here n = 8."""
     rate = sp.Matrix(rate_of_state(ORDER)).subs(t, 0)
     printed = sp.zeros(ORDER, ORDER)
     printed[0, 1] = rho
@@ -198,21 +171,16 @@ def printed_transition(n: int) -> sp.Matrix:
     return sp.Matrix(n, n, entry)
 
 
-transition_matrix = claim(
-    "4.Phi",
-    "Transition matrix over a step; n = 8, smaller orders are its leading blocks.",
+CLAIMS_4 = claims(
+    "4.Phi | Transition matrix over a step; n = 8, smaller orders are its leading blocks.",
     lambda: Equation(printed_transition(ORDER), sp.Matrix(moved_state(ORDER, tau)).jacobian(STATE)),
-)
-transition_matrix_is_the_finite_series = claim(
-    "4.Phi.series",
-    "The transition matrix is the series of exp(A tau), which ends because A is nilpotent; n = 8.",
+    "4.Phi.series | The transition matrix is the series of exp(A tau), which ends because A is nilpotent; n = 8.",
     lambda: Equation(printed_transition(ORDER), model.nilpotent_exponential(model.dynamics(ORDER, rho), tau)),
 )
 
 
-@claim("4.smaller_step")
+@claim("4.smaller_step | For rho = 1/r with r growing steadily the error of a step grows with its length.")
 def better_for_smaller_steps():
-    """For rho = 1/r with r growing steadily the error of a step grows with its length."""
     r, climb, speed = sp.symbols("r V3 V2", positive=True)
     # d/dtau of the integral of (rho(s) - rho(0)) V2 ds: of one sign, so the error only grows.
     growth = sp.factor((1 / (r + climb * tau) - 1 / r) * speed)
@@ -220,30 +188,25 @@ def better_for_smaller_steps():
 
 
 @claim(
-    "4.z",
-    slip="paper",
-    reason="H_p = H Phi acts on the state before the step: the index of x is k, as in equations 5 and 6; by hand: n "
-    "= 2, rho tau = 1, x_k = (0, 1): the coordinate after the step is 1, the print gives 2",
+    "4.z | The measurement z_(k+1) = H_p x_(k+1), as printed; n = 5. | paper: H_p = H Phi acts on the state before "
+    "the step: the index of x is k, as in equations 5 and 6; by hand: n = 2, rho tau = 1, x_k = (0, 1): the "
+    "coordinate after the step is 1, the print gives 2"
 )
 def stepped_measurement_printed():
-    """The measurement z_(k+1) = H_p x_(k+1), as printed; n = 5."""
     after = sp.Matrix(moved_state(5, tau))
     return Equation((measured_row(5) * printed_transition(5) * after)[0], after[0])
 
 
-@claim("4.z*")
+@claim("4.z* | The measurement after a step by the state before it: z_(k+1) = H_p x_k; n = 5.")
 def stepped_measurement():
-    """The measurement after a step by the state before it: z_(k+1) = H_p x_k; n = 5."""
     before, after = sp.Matrix(STATE[:5]), sp.Matrix(moved_state(5, tau))
     return Equation((measured_row(5) * printed_transition(5) * before)[0], after[0])
 
 
-measured_coordinate = claim(
-    "4.H", "H = (1, 0, ..., 0); n = 8.", lambda: Equation(sp.Matrix([[1] + [0] * (ORDER - 1)]), measured_row(ORDER))
-)
-measurement_through_a_step = claim(
-    "4.Hp",
-    "H_p = H Phi = (1, rho tau, ..., rho tau^(n-1)/(n-1)!); n = 8.",
+CLAIMS_4_2 = claims(
+    "4.H | H = (1, 0, ..., 0); n = 8.",
+    lambda: Equation(sp.Matrix([[1] + [0] * (ORDER - 1)]), measured_row(ORDER)),
+    "4.Hp | H_p = H Phi = (1, rho tau, ..., rho tau^(n-1)/(n-1)!); n = 8.",
     lambda: Equation(
         sp.Matrix([[sp.Integer(1)] + [rho * tau**j / sp.factorial(j) for j in range(1, ORDER)]]),
         sp.Matrix([moved_state(ORDER, tau)[0]]).jacobian(STATE),
@@ -270,12 +233,10 @@ def improves(n: int, longer: sp.Rational, shorter: sp.Rational) -> bool:
 
 
 @claim(
-    "4.hadamard",
-    slip="paper",
-    reason="not inevitably: at n = 20 the smaller step 0.94 s is better than 1 s (6.05e16 against 8.09e16)",
+    "4.hadamard | A smaller step inevitably worsens the condition number (n = 20, 1 s against 0.94 s). | paper: not "
+    "inevitably: at n = 20 the smaller step 0.94 s is better than 1 s (6.05e16 against 8.09e16)"
 )
 def smaller_steps_always_worsen():
-    """A smaller step inevitably worsens the condition number (n = 20, 1 s against 0.94 s)."""
     longer, shorter = sp.Integer(1), sp.Rational("0.94")
     method = "certified condition numbers"
     scope = "n = 20, rho = 1/6371000, tau = 1 and 0.94"

@@ -6,8 +6,10 @@ from math import comb
 
 import sympy as sp
 
-from navsym.claims import PROVED, Equation, Property, claim, fact, state
+from navsym.claims import PROVED, Equation, Property, claim, claims, fact, state
 from navsym_papers.trajectory import model
+
+x = sp.Symbol("x", real=True)
 
 rho, tau = sp.symbols("rho tau", positive=True)
 
@@ -58,34 +60,28 @@ def D_s(n: int) -> sp.Matrix:
 # -- one stage -----------------------------------------------------------------------------------------
 
 
-@claim("5.Phi")
-def normalised_transition():
-    """Phi^- = D Phi D^-1: binomial coefficients times |column i| / |column j| of the powers i^(j-1); n = 4."""
-    size = powers(SMALL)
-    return Equation(
-        D(SMALL) * step(SMALL) * D(SMALL).inv(), sp.Matrix(SMALL, SMALL, lambda i, j: comb(j, i) * size[i] / size[j])
-    )
-
-
 def powers(n: int) -> list[sp.Expr]:
     """Lengths of the columns 1^k, 2^k, ..., n^k for k = 0 ... n - 1."""
     return [sp.sqrt(sum(sp.Integer(i) ** (2 * k) for i in range(1, n + 1))) for k in range(n)]
-
-
-normalised_measurement = claim(
-    "5.H",
-    "H^- = H_p D^-1: one over the lengths of the columns of the powers i^(j-1); n = 4.",
-    lambda: Equation(list(measured(SMALL) * D(SMALL).inv()), [1 / length for length in powers(SMALL)]),
-)
 
 
 def sensitivity(matrix: sp.Matrix) -> list[sp.Expr]:
     return [*matrix.diff(rho), *matrix.diff(tau)]
 
 
-@claim("5.independent")
+CLAIMS_5 = claims(
+    "5.Phi | Phi^- = D Phi D^-1: binomial coefficients times |column i| / |column j| of the powers i^(j-1); n = 4.",
+    lambda: Equation(
+        D(SMALL) * step(SMALL) * D(SMALL).inv(),
+        sp.Matrix(SMALL, SMALL, lambda i, j: comb(j, i) * powers(SMALL)[i] / powers(SMALL)[j]),
+    ),
+    "5.H | H^- = H_p D^-1: one over the lengths of the columns of the powers i^(j-1); n = 4.",
+    lambda: Equation(list(measured(SMALL) * D(SMALL).inv()), [1 / length for length in powers(SMALL)]),
+)
+
+
+@claim("5.independent | The normalised matrices Phi^- and H^- do not depend on rho and tau; n = 5.")
 def independent_of_rho_and_tau():
-    """The normalised matrices Phi^- and H^- do not depend on rho and tau; n = 5."""
     scale = D(PRINTED)
     changes = sensitivity(scale * step(PRINTED) * scale.inv()) + sensitivity(measured(PRINTED) * scale.inv())
     return Equation([sp.Integer(0)] * len(changes), changes)
@@ -94,30 +90,9 @@ def independent_of_rho_and_tau():
 # -- two stages: the first -----------------------------------------------------------------------------
 
 
-first_stage_scaling = claim(
-    "6.Df",
-    "D_f = diag(1, rho tau, rho tau^2/2!, rho tau^3/3!, rho tau^4/4!) turns H_p into a row of ones.",
-    lambda: Equation(sp.diag(1, rho * tau, rho * tau**2 / 2, rho * tau**3 / 6, rho * tau**4 / 24), D_f(PRINTED)),
-)
-first_stage_transition = claim(
-    "6.Phif",
-    "Phi_f for n = 5.",
-    lambda: Equation(
-        sp.Matrix([[1, 1, 1, 1, 1], [0, 1, 2, 3, 4], [0, 0, 1, 3, 6], [0, 0, 0, 1, 4], [0, 0, 0, 0, 1]]),
-        in_first_stage(PRINTED)[0],
-    ),
-)
-first_stage_measurement = claim(
-    "6.Hf", "H_f = (1, 1, 1, 1, 1).", lambda: Equation(sp.Matrix([[1, 1, 1, 1, 1]]), in_first_stage(PRINTED)[1])
-)
-
-
 PRINTED_NF = sp.Matrix(
     [[1, 1, 1, 1, 1], [1, 2, 4, 8, 16], [1, 3, 9, 27, 81], [1, 4, 16, 64, 256], [1, 5, 25, 125, 625]]
 )
-
-
-first_stage_observability = claim("6.Nf", "N_f for n = 5.", lambda: Equation(PRINTED_NF, N_f(PRINTED)))
 
 
 @lru_cache(maxsize=1)
@@ -148,9 +123,23 @@ def say_entries(rows: list[dict[tuple[int, int], int]]) -> tuple[dict, ...]:
     return tuple(state(write_rows(left), "=", write_rows(right), POSITIVE) for left, right in texts)
 
 
-@claim("6.Phif.triangular")
+CLAIMS_6 = claims(
+    "6.Df | D_f = diag(1, rho tau, rho tau^2/2!, rho tau^3/3!, rho tau^4/4!) turns H_p into a row of ones.",
+    lambda: Equation(sp.diag(1, rho * tau, rho * tau**2 / 2, rho * tau**3 / 6, rho * tau**4 / 24), D_f(PRINTED)),
+    "6.Phif | Phi_f for n = 5.",
+    lambda: Equation(
+        sp.Matrix([[1, 1, 1, 1, 1], [0, 1, 2, 3, 4], [0, 0, 1, 3, 6], [0, 0, 0, 1, 4], [0, 0, 0, 0, 1]]),
+        in_first_stage(PRINTED)[0],
+    ),
+    "6.Hf | H_f = (1, 1, 1, 1, 1).",
+    lambda: Equation(sp.Matrix([[1, 1, 1, 1, 1]]), in_first_stage(PRINTED)[1]),
+    "6.Nf | N_f for n = 5.",
+    lambda: Equation(PRINTED_NF, N_f(PRINTED)),
+)
+
+
+@claim("6.Phif.triangular | Phi_f is upper triangular with integer elements, Phi_f,ii = 1 and Phi_f,1j = 1; n = 30.")
 def transition_is_triangular():
-    """Phi_f is upper triangular with integer elements, Phi_f,ii = 1 and Phi_f,1j = 1; n = 30."""
     Phi, places = transitions(), [(i, j) for i in range(LARGEST) for j in range(LARGEST)]
     holds = all(Phi[i, j].is_Integer and (j >= i or Phi[i, j] == 0) for i, j in places)
     holds = holds and all(Phi[i, j] == 1 for i, j in places if i in (0, j))
@@ -176,20 +165,6 @@ def recurrence_holds(row_step: int) -> Property:
         return state(write_rows([Phi[target(i), j + 1] for j in columns]), "=", " + ".join(before))
 
     return fact(True, found, "exact matrix", PROVED, scope=SCOPE, meaning=tuple(map(say, rows)))
-
-
-recurrence_printed = claim(
-    "6.Phif.recurrence",
-    "Phi_(i+i, j+1) = Phi_ij + Phi_(i+1)j, as printed.",
-    lambda: recurrence_holds(0),
-    slip="undecidable",
-    reason="the first index is i + 1: with i + i, i = 2, j = 3 the rule asks Phi_4,4 = 2 + 1, but it is 1",
-)
-recurrence = claim(
-    "6.Phif.recurrence*",
-    "Phi_(i+1, j+1) = Phi_ij + Phi_(i+1)j: Pascal's triangle of n = 30.",
-    lambda: recurrence_holds(1),
-)
 
 
 def reached(allowed) -> int:
@@ -220,24 +195,23 @@ def say_range(allowed) -> Property:
     return fact(10, reached(allowed), "closure of the rules", PROVED, scope="n = 5", meaning=meaning)
 
 
-recurrence_range_printed = claim(
-    "6.Phif.range",
-    "The recurrence for i >= j determines all 10 elements above the diagonal (n = 5).",
-    lambda: say_range(lambda i, j: i >= j),
-    slip="undecidable",
-    reason="for i >= j the recurrence only says 0 = 0 + 0 and 1 = 1 + 0: six of the ten elements above the "
+CLAIMS_6_2 = claims(
+    "6.Phif.recurrence | Phi_(i+i, j+1) = Phi_ij + Phi_(i+1)j, as printed. | undecidable: the first index is i + "
+    "1: with i + i, i = 2, j = 3 the rule asks Phi_4,4 = 2 + 1, but it is 1",
+    lambda: recurrence_holds(0),
+    "6.Phif.recurrence* | Phi_(i+1, j+1) = Phi_ij + Phi_(i+1)j: Pascal's triangle of n = 30.",
+    lambda: recurrence_holds(1),
+    "6.Phif.range | The recurrence for i >= j determines all 10 elements above the diagonal (n = 5). | "
+    "undecidable: for i >= j the recurrence only says 0 = 0 + 0 and 1 = 1 + 0: six of the ten elements above the "
     "diagonal stay undetermined; the range has to be i <= j",
-)
-recurrence_range = claim(
-    "6.Phif.range*",
-    "The recurrence for i <= j determines all 10 elements above the diagonal (n = 5).",
+    lambda: say_range(lambda i, j: i >= j),
+    "6.Phif.range* | The recurrence for i <= j determines all 10 elements above the diagonal (n = 5).",
     lambda: say_range(lambda i, j: i <= j),
 )
 
 
-@claim("6.Nf.elements")
+@claim("6.Nf.elements | N_f,ij = i^(j-1); n = 16.")
 def observability_elements():
-    """N_f,ij = i^(j-1); n = 16."""
     found = tuple(int(x) for x in N_f(16))
     printed = tuple(i**j for i in range(1, 17) for j in range(16))
     rows = [[f"{i}**{j}" for j in range(16)] for i in range(1, 17)]
@@ -245,30 +219,27 @@ def observability_elements():
     return fact(printed, found, "exact matrix", PROVED, scope="n = 16", meaning=meaning)
 
 
-@claim("6.Nf.row_step")
-def observability_rows_for_every_index():
-    """Row x of N_f times Phi_f is row x + 1, for every x: the binomial theorem, columns 1 to 16."""
-    x = sp.Symbol("x", real=True)
-    return Equation(
+CLAIMS_6_3 = claims(
+    "6.Nf.row_step | Row x of N_f times Phi_f is row x + 1, for every x: the binomial theorem, columns 1 to 16.",
+    lambda: Equation(
         [(x + 1) ** j for j in range(16)], [sum(x**m * comb(j, m) for m in range(j + 1)) for j in range(16)]
-    )
+    ),
+)
 
 
 # -- two stages: the second ----------------------------------------------------------------------------
 
 
-observability_by_stages = claim(
-    "6.Np",
-    "N_p = N_f D_f with the printed matrices; n = 5.",
+CLAIMS_6_4 = claims(
+    "6.Np | N_p = N_f D_f with the printed matrices; n = 5.",
     lambda: Equation(
         PRINTED_NF * sp.diag(1, rho * tau, rho * tau**2 / 2, rho * tau**3 / 6, rho * tau**4 / 24), N_p(PRINTED)
     ),
 )
 
 
-@claim("6.Np.rows")
+@claim("6.Np.rows | Row x of N_p, H Phi(x tau), is row (x^0, x^1, ...) of N_f times D_f, for every real x; n = 12.")
 def observability_row_by_row():
-    """Row x of N_p, H Phi(x tau), is row (x^0, x^1, ...) of N_f times D_f, for every real x; n = 12."""
     x = sp.Symbol("x", positive=True)
     n = 12
     return Equation(
@@ -277,27 +248,21 @@ def observability_row_by_row():
     )
 
 
-scalings_multiply = claim(
-    "6.D", "D = D_s D_f for positive rho and tau; n = 5.", lambda: Equation(D_s(PRINTED) * D_f(PRINTED), D(PRINTED))
-)
-scalings_multiply_for_other_orders = claim(
-    "6.D.orders",
-    "D = D_s D_f for positive rho and tau, column by column, n = 2 to 8.",
+CLAIMS_6_5 = claims(
+    "6.D | D = D_s D_f for positive rho and tau; n = 5.",
+    lambda: Equation(D_s(PRINTED) * D_f(PRINTED), D(PRINTED)),
+    "6.D.orders | D = D_s D_f for positive rho and tau, column by column, n = 2 to 8.",
     lambda: Equation(
         [x for n in range(2, 9) for x in (D_s(n) * D_f(n)).diagonal()],
         [x for n in range(2, 9) for x in D(n).diagonal()],
     ),
-)
-both_procedures_meet = claim(
-    "6.Ns",
-    "N_s = N_pN for positive rho and tau; n = 5.",
+    "6.Ns | N_s = N_pN for positive rho and tau; n = 5.",
     lambda: Equation(N_f(PRINTED) * D_s(PRINTED).inv(), N_p(PRINTED) * D(PRINTED).inv()),
 )
 
 
-@claim("6.more_stages")
+@claim("6.more_stages | With D_p = diag(1, rho, ..., rho) as a first stage the model no longer contains rho; n = 5.")
 def an_earlier_stage_takes_rho_out():
-    """With D_p = diag(1, rho, ..., rho) as a first stage the model no longer contains rho; n = 5."""
     D_p = sp.diag(1, *([rho] * (PRINTED - 1)))
     changes = [*(D_p * step(PRINTED) * D_p.inv()).diff(rho), *(measured(PRINTED) * D_p.inv()).diff(rho)]
     return Equation([sp.Integer(0)] * len(changes), changes)

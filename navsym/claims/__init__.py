@@ -1,6 +1,6 @@
 """Statements, verdicts, claims and papers: the nouns of navsym, as plain data."""
 
-from navsym.claims.claim import Claim, claim
+from navsym.claims.claim import Claim, claim, claims
 from navsym.claims.formula import Formula
 from navsym.claims.paper import Coverage, Paper, claims_of, compare_equations, equation_of
 from navsym.claims.record import Record
@@ -45,6 +45,7 @@ __all__ = [
     "Worded",
     "certify_at_sight",
     "claim",
+    "claims",
     "claims_of",
     "compare_equations",
     "equation_of",

@@ -4,11 +4,10 @@ from __future__ import annotations
 
 import functools
 import html
-import inspect
 import sys
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass
-from typing import Any, Literal, cast
+from typing import Any, Literal, cast, get_args
 
 from navsym.claims.display import mark_verdict, write_card
 from navsym.claims.statement import Equation, Statement
@@ -90,17 +89,19 @@ def claim(
 ) -> Any:
     """A :class:`Claim` of a number, a title and a function that states it; without the function a decorator of one.
 
-    Without a title it is the first line of the docstring. A slip is declared REFUTED, a number with a star corrects
-    the one without. A function that yields pairs of a printed and a derived side states that each pair is equal.
+    The number may be a whole heading (:func:`claims`). Without a title it is the first line of the docstring. A slip is
+    declared REFUTED, a number with a star corrects the one without. A function that gives pairs of a printed and a
+    derived side states that each pair is equal.
     """
+    number, *cells = number.split(" | ", 2)
+    slip, expect, reason = read_slip(cells[1]) if cells[1:] else (slip, expect, reason)
 
     def make(derive: Derive) -> Claim:
-        is_generator = inspect.isgeneratorfunction(derive)
         return Claim(
             module=derivation_name(derive),
             number=number,
-            title=title if title is not None else title_of(derive),
-            derive=cast(Callable[[], Statement], collect_pairs(derive) if is_generator else derive),
+            title=cells[0] if cells else title if title is not None else title_of(derive),
+            derive=collect_pairs(derive),
             expect=expect or (REFUTED if slip else PROVED),
             corrects=corrects or (number.removesuffix("*") if number.endswith("*") else None),
             slip=slip,
@@ -110,14 +111,41 @@ def claim(
     return make if derive is None else make(derive)
 
 
+def claims(*rows: str | Derive) -> tuple[Claim, ...]:
+    """The claims of a section: headings and the functions that state them, in turn.
+
+    A heading is ``number | title``, with ``| paper: reason`` behind it for a slip of the paper, ``| scan: …`` or
+    ``| undecidable: …``; ``| CERTIFIED`` for another verdict than PROVED, ``| note: reason`` for a word on it.
+
+    >>> [one.reason for one in claims("5 | The sum. | paper: a sign is lost", lambda: Equation(-2, 1 + 1))]
+    ['a sign is lost']
+    """
+    if len(rows) % 2 or not all(isinstance(text, str) for text in rows[::2]) or not all(map(callable, rows[1::2])):
+        raise ValueError(
+            "claims: expected headings and functions in turn; got another order; put a heading before each"
+        )
+    return tuple(claim(cast(str, text), derive=cast(Derive, f)) for text, f in zip(rows[::2], rows[1::2], strict=True))
+
+
+def read_slip(text: str) -> tuple[Slip | None, Status | None, str]:
+    """Who slipped, or the verdict declared, and the reason: the end of a heading."""
+    word, _, reason = text.partition(": ")
+    if word in get_args(Slip):
+        return cast(Slip, word), None, reason
+    return None, None if word == "note" else Status(word), reason
+
+
 def collect_pairs(derive: Callable[[], Any]) -> Callable[[], Statement]:
-    """A function that gives one equation of all pairs, entry by entry."""
+    """A function that gives a statement, or one equation of all pairs, entry by entry."""
 
     @functools.wraps(derive)
     def collected() -> Statement:
+        statement = derive()
+        if not isinstance(statement, Iterator):
+            return cast(Statement, statement)
         printed: list[Any] = []
         derived: list[Any] = []
-        for left, right in derive():
+        for left, right in statement:
             printed += entries_of(left)
             derived += entries_of(right)
         return Equation(printed, derived)

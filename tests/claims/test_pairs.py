@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import inspect
 
+import pytest
 import sympy as sp
 
-from navsym.claims import Equation, claim
+from navsym.claims import Equation, claim, claims
 from navsym.prove.ladder import decide
 
 a, b = sp.symbols("a b", real=True)
@@ -42,3 +43,31 @@ def test_all_pairs_make_one_equation():
 def test_one_wrong_case_refutes_all():
     verdict = decide(wrong_in_one_case.derive())
     assert verdict.status == "REFUTED" and verdict.counterexample["a"] not in ("0",)
+
+
+TABLE = claims(
+    "3 | A sign. | paper: the sign is lost",
+    lambda: Equation(-a, a),
+    "3* | The number. | CERTIFIED",
+    lambda: Equation(a, a),
+    "4 | Cases. | note: two | of them",
+    lambda: ((a**n, a * a ** (n - 1)) for n in (2, 3)),
+)
+
+
+def test_a_heading_says_what_the_keywords_of_a_claim_say():
+    wrong, right, cases = TABLE
+    assert (wrong.number, wrong.title, wrong.slip, wrong.reason) == ("3", "A sign.", "paper", "the sign is lost")
+    assert (wrong.expect, right.expect, right.corrects, cases.expect) == ("REFUTED", "CERTIFIED", "3", "PROVED")
+    assert (cases.reason, cases.slip) == ("two | of them", None) and cases.derive().derived == [a * a, a * a**2]
+
+
+@pytest.mark.parametrize("rows", [("5 | A title.",), (lambda: None, "5 | A title."), ("5 | A.", "6 | B.")])
+def test_a_heading_without_its_statement_is_refused(rows):
+    with pytest.raises(ValueError, match="a heading before each"):
+        claims(*rows)
+
+
+def test_an_unknown_verdict_in_a_heading_is_refused():
+    with pytest.raises(ValueError, match="DOUBTFUL"):
+        claims("5 | A title. | DOUBTFUL: why", lambda: Equation(a, a))

@@ -6,6 +6,7 @@ They hold for the papers here (``test_rules``) and are broken one by one by a sm
 from __future__ import annotations
 
 import ast
+import inspect
 import re
 from collections.abc import Callable
 from dataclasses import dataclass
@@ -15,7 +16,7 @@ from pathlib import Path
 from typing import get_args
 
 from navsym.claims import CONFIRMED, OPEN, REFUTED, Claim, Paper, compare_equations
-from navsym.claims.claim import Slip, collect_pairs
+from navsym.claims.claim import Slip
 from navsym.claims.record import Record
 from navsym.prove.grant import UNCHECKED
 from tests.derivations.titles import (
@@ -137,13 +138,14 @@ def statements_of(tree: ast.Module) -> list[tuple[int, list[ast.expr]]]:
             found.append((node.lineno, [*node.args, *named][:2]))
         elif isinstance(node, ast.Yield) and isinstance(node.value, ast.Tuple):
             found.append((node.lineno, node.value.elts))
+        elif isinstance(node, ast.Lambda) and isinstance(node.body, ast.GeneratorExp):
+            found.append((node.lineno, getattr(node.body.elt, "elts", [])))
     return [(line, sides) for line, sides in found if len(sides) == 2]
 
 
 def files_of(judged: Judged) -> list[Path]:
     """The sources of the claims of a paper."""
-    sources = {claim.derive.__code__.co_filename for claim in judged.claims} - {collect_pairs.__code__.co_filename}
-    return sorted(map(Path, sources))
+    return sorted({Path(inspect.unwrap(claim.derive).__code__.co_filename) for claim in judged.claims})
 
 
 def sides_that_nothing_computes(judged: Judged) -> list[str]:

@@ -72,12 +72,25 @@ def is_computed(side: ast.AST, own: dict[str, list[ast.AST]], top: dict[str, lis
 
 def owner_of(tree: ast.Module, line: int) -> tuple[str, ast.AST]:
     """The number of the claim whose statement stands on a line, or the name of its function; and its source."""
-    around = [n for n in tree.body if n.lineno <= line <= (n.end_lineno or 0) or is_decorated(n, line)]
-    for node in ast.walk(around[0]):
-        is_claim = isinstance(node, ast.Call) and ast.unparse(node.func) == "claim" and node.args
-        if is_claim and (isinstance(around[0], ast.FunctionDef) or node.lineno <= line <= (node.end_lineno or 0)):
-            return ast.unparse(node.args[0]).strip("'"), around[0]
-    return getattr(around[0], "name", ast.unparse(around[0])[:30]), around[0]
+    around = next(n for n in tree.body if n.lineno <= line <= (n.end_lineno or 0) or is_decorated(n, line))
+    for number, derive, whole in headings_in(around):
+        if isinstance(around, ast.FunctionDef) or whole.lineno <= line <= (whole.end_lineno or 0):
+            return number, derive or around
+    name = getattr(around, "name", ast.unparse(around)[:30])
+    rows = (row for node in tree.body for row in headings_in(node))
+    return next((one for one, f, _ in rows if isinstance(f, ast.Name) and f.id == name), name), around
+
+
+def headings_in(node: ast.AST) -> Iterator[tuple[str, ast.expr | None, ast.expr]]:
+    """The number of each claim in a statement of a file; what states it, in a table; and where it stands."""
+    for call in ast.walk(node):
+        called = ast.unparse(call.func) if isinstance(call, ast.Call) and call.args else ""
+        if called == "claims":
+            rows = [(a, f, f) for a, f in zip(call.args[::2], call.args[1::2], strict=True)]
+        else:
+            rows = [(call.args[0], None, call)] if called == "claim" else []
+        for heading, derive, whole in rows:
+            yield ast.unparse(heading).strip("'\"").partition(" | ")[0], derive, whole
 
 
 def is_decorated(node: ast.AST, line: int) -> bool:
