@@ -437,18 +437,15 @@ class Reader(SourceReader):
                 why = "a pointer that is set again"
                 return (self.part("moved", node, moved, why, identifiers_in(node), is_exact),)
             case "assignment_expression":
-                sign = text_of(field_of(node, "operator"))[:-1]
-                if sign not in ("", "+", "-", "*", "/"):
-                    return (self.unread(node, f"the assignment {sign}="),)
-                right = field_of(node, "right")
-                if any(inner.type == "primitive_type" for inner in descend(field_of(node, "left"))):
+                left, right = field_of(node, "left"), field_of(node, "right")
+                if any(inner.type == "primitive_type" for inner in descend(left)):
                     return (self.unread(node, "a type where a name is assigned, as of a reference to an array"),)
                 is_chain = right.type == "assignment_expression"  # a = b = c
                 first, right = (self.effect(right), field_of(right, "left")) if is_chain else ((), right)
-                left, value = self.expression(field_of(node, "left")), self.expression(right)
-                if "noalias()" in text_of(field_of(node, "left")) and names_in(left) & names_in(value):
+                done = self.assign(node, left, right)
+                if "noalias()" in text_of(left) and names_in(*done.parts[:1]) & names_in(*done.parts[2:]):
                     return (self.unread(node, "noalias() of what the target is in"),)
-                return (*first, self.part("assign", node, left, sign, value))
+                return (*first, done)
             case "update_expression":
                 target, sign = self.expression(field_of(node, "argument")), text_of(field_of(node, "operator"))[0]
                 return (self.part("assign", node, target, sign, self.whole(node, 1)),)

@@ -32,7 +32,6 @@ STRING, WRITING = re.compile(r'"(\\.|[^"\\])*"'), re.compile(r"(?<![=!<>])=(?!=)
 INSIDE, OWNER = ("self", "Self", "crate", "super"), "type "
 OPEN = "which each type of a trait may define otherwise"
 DEFINING = ("struct_item", "enum_item", "union_item", "type_item", "macro_definition")
-SIGNS = ("", "+=", "-=", "*=", "/=", "%=")
 
 
 def type_of(text: str) -> tuple[str, tuple[int, ...] | None]:
@@ -176,9 +175,8 @@ class Reader(SourceReader):
             case "assignment_expression" if (moved := text_of(field_of(node, "left"))) in self.pointers:
                 names = identifiers_in(node)
                 return (self.part("moved", node, moved, "a reference that is set again", names, False),)
-            case "assignment_expression" | "compound_assignment_expr" if text_of(field_of(node, "operator")) in SIGNS:
-                left, right = self.fields(node, "left", "right")
-                return (self.part("assign", node, left, text_of(field_of(node, "operator"))[:-1], right),)
+            case "assignment_expression" | "compound_assignment_expr":
+                return (self.assign(node, field_of(node, "left"), field_of(node, "right")),)
             case "if_expression":
                 return (self.branch(node, self.block),)
             case "for_expression":
@@ -250,15 +248,10 @@ class Reader(SourceReader):
 
     def loop(self, node: Any) -> Part:
         """``for i in 0..n``."""
-        name, source = field_of(node, "pattern"), field_of(node, "value")
-        ends = named(source) if source.type == "range_expression" else []
-        if name.type != "identifier" or len(ends) != 2:
-            return self.unread(node, "a loop over something else than a range")
-        start, stop = map(self.expression, ends)
-        one = self.whole(node, 1)
-        if any(text_of(child) == "..=" for child in source.children):
-            stop = self.part("op", source, "+", stop, one)
-        return self.part("for", node, text_of(name), start, stop, one, self.block(field_of(node, "body")))
+        source = field_of(node, "value")
+        ends = self.several(named(source)) if source.type == "range_expression" else ()
+        is_closed = any(text_of(child) == "..=" for child in source.children)
+        return self.count(node, field_of(node, "pattern"), source, ends, is_closed)
 
     def read_expression(self, node: Any) -> Part | None:
         match node.type:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import functools
 import importlib
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import Any, ClassVar
@@ -379,6 +379,23 @@ class SourceReader:
         if sign not in self.UNARY:
             return self.refuse(node, f"the operator {sign}")
         return self.part(self.UNARY[sign], node, self.expression(operand))
+
+    def assign(self, node: Any, left: Any, right: Any) -> Part:
+        """An assignment, also with an operator for arithmetic."""
+        sign = text_of(field_of(node, "operator")).removesuffix("=")
+        if sign and self.OPERATORS.get(sign, ("",))[0] != "op":
+            return self.unread(node, f"the assignment {sign}=")
+        return self.part("assign", node, self.expression(left), sign, self.expression(right))
+
+    def count(self, node: Any, name: Any, source: Any, ends: Sequence[Part], is_closed: bool) -> Part:
+        """A loop from a start to a stop, which belongs to it where it is closed, perhaps with a step."""
+        if name.type != "identifier" or not 2 <= len(ends) <= 3:
+            return self.unread(node, "a loop over something else than a range")
+        start, stop, step = (*ends, one := self.whole(source, 1))[:3]
+        if is_closed and step.kind not in ("number", "minus"):
+            return self.unread(node, "a loop with a step that is no number")
+        stop = self.part("op", source, "-" if step.kind == "minus" else "+", stop, one) if is_closed else stop
+        return self.part("for", node, text_of(name), start, stop, step, self.block(find_body(node)))
 
     def literal(self, node: Any, text: str, is_real: bool) -> Part:
         """A number in decimal digits."""
