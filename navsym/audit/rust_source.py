@@ -56,7 +56,6 @@ def type_of(text: str) -> tuple[str, tuple[int, ...] | None]:
 class Reader(SourceReader):
     """Walks the syntax tree of Rust.
 
-    pointers     : references that the function being read declares
     foreign      : names that ``use`` brings from elsewhere, or under another name, and numbers of templates
     defined      : the types and macros of the file
     """
@@ -65,7 +64,6 @@ class Reader(SourceReader):
     REALS = OPEN_TYPES
     OPEN = ("if_expression", "for_expression", "block", "expression_statement")
 
-    pointers: set[str] = field(default_factory=set)
     foreign: set[str] = field(default_factory=set)
     defined: set[str] = field(default_factory=set)
 
@@ -171,10 +169,9 @@ class Reader(SourceReader):
 
     def effect(self, node: Any) -> tuple[Part, ...]:
         """What an expression that stands alone does."""
+        if (moved := self.set_again(node)) is not None:
+            return (moved,)
         match node.type:
-            case "assignment_expression" if (moved := text_of(field_of(node, "left"))) in self.pointers:
-                names = identifiers_in(node)
-                return (self.part("moved", node, moved, "a reference that is set again", names, False),)
             case "assignment_expression" | "compound_assignment_expr":
                 return (self.assign(node, field_of(node, "left"), field_of(node, "right")),)
             case "if_expression":
