@@ -50,7 +50,6 @@ DYNAMIC = re.compile(r"(?:Eigen::)?(?:Matrix|Vector)X[fd]")  # whose size is tha
 QUATERNION = re.compile(r"Quaternion[fd]|(Eigen::)Quaternion([fd]|<\w+>)")
 #: What stands between two parts of a name and is no plain number: a call with arguments, or an index.
 COMPUTED = re.compile(r"\(\s*[^)\s]|\[(?!(0|[1-9]\d*)\])")
-ADDRESS = re.compile(r"&\s*[A-Za-z_]\w*", re.ASCII)
 POINTER = ("pointer_declarator", "abstract_pointer_declarator")
 SECONDS = ("pointer_declarator", "reference_declarator")
 
@@ -78,7 +77,7 @@ class Reader(SourceReader):
     """Walks the syntax tree of C and C++.
 
     locals : the names that the function being read declares
-    pointers, arrays : those of them that are pointers or arrays, and arrays
+    arrays : those of them that are arrays
     spaces : the namespaces of the file
     directives : the names of macros
     nodes      : of the tree
@@ -90,7 +89,6 @@ class Reader(SourceReader):
     OPEN = (*SourceReader.OPEN, "while_statement", "do_statement", "switch_statement", "compound_statement")
 
     locals: set[str] = field(default_factory=set)
-    pointers: set[str] = field(default_factory=set)
     arrays: set[str] = field(default_factory=set)
     directives: set[str] = field(default_factory=set)
     nodes: list[Any] = field(default_factory=list)
@@ -305,7 +303,8 @@ class Reader(SourceReader):
             case "declaration":
                 return self.declaration(node)
             case "if_statement":
-                return (self.branch(node),)
+                then, other = self.block(field_of(node, "consequence")), self.block(field_of(node, "alternative"))
+                return (self.part("if", node, *self.fields(node, "condition"), then, other),)
             case "for_statement" | "while_statement" | "do_statement":
                 return (self.loop(node),)
             case "switch_statement":
@@ -314,16 +313,9 @@ class Reader(SourceReader):
                 return ()
         return None
 
-    def branch(self, node: Any) -> Part:
-        test = field_of(node, "condition")
-        value = field_of(test, "value") or next(iter(named(test)), None)
-        then, other = self.block(field_of(node, "consequence")), self.block(field_of(node, "alternative"))
-        return self.part("if", node, self.expression(value), then, other)
-
     def loop(self, node: Any) -> Part:
         """``for``, ``while`` and ``do``."""
         start, test, step = (field_of(node, name) for name in ("initializer", "condition", "update"))
-        test = field_of(test, "value") or (named(test)[0] if test is not None and "parenth" in test.type else test)
         first = () if start is None else self.declaration(start) if start.type == "declaration" else self.effect(start)
         after = () if step is None else self.effect(step)
         body = self.block(field_of(node, "body"))
@@ -331,8 +323,7 @@ class Reader(SourceReader):
 
     def switch(self, node: Any) -> Part:
         """``switch`` as ``if``: a case goes on into the next one unless it ends in a jump."""
-        value = field_of(field_of(node, "condition"), "value") or next(iter(named(field_of(node, "condition"))), None)
-        cases, test = named(field_of(node, "body")), self.expression(value)
+        cases, test = named(field_of(node, "body")), self.expression(field_of(node, "condition"))
         labels = (n for case in cases for n in descend(case) if n.type in ("case_statement", "..."))
         is_odd = any(n.type == "..." or n.parent.parent.type != "switch_statement" for n in labels)
         kinds = (
@@ -429,26 +420,19 @@ class Reader(SourceReader):
 
     def effect(self, node: Any) -> tuple[Part, ...]:
         """What an expression that stands alone writes."""
-        moved = text_of(field_of(node, "left") or field_of(node, "argument"))
+        if (moved := self.set_again(node)) is not None:
+            return (moved,)
         match node.type:
-            case "assignment_expression" | "update_expression" if moved in self.pointers:
-                given = text_of(field_of(node, "right"))  # &x of a variable, or what may lead anywhere
-                is_exact = ADDRESS.fullmatch(given) is not None and given[1:].strip() not in self.pointers
-                why = "a pointer that is set again"
-                return (self.part("moved", node, moved, why, identifiers_in(node), is_exact),)
             case "assignment_expression":
-                sign = text_of(field_of(node, "operator"))[:-1]
-                if sign not in ("", "+", "-", "*", "/"):
-                    return (self.unread(node, f"the assignment {sign}="),)
-                right = field_of(node, "right")
-                if any(inner.type == "primitive_type" for inner in descend(field_of(node, "left"))):
+                left, right = field_of(node, "left"), field_of(node, "right")
+                if any(inner.type == "primitive_type" for inner in descend(left)):
                     return (self.unread(node, "a type where a name is assigned, as of a reference to an array"),)
                 is_chain = right.type == "assignment_expression"  # a = b = c
                 first, right = (self.effect(right), field_of(right, "left")) if is_chain else ((), right)
-                left, value = self.expression(field_of(node, "left")), self.expression(right)
-                if "noalias()" in text_of(field_of(node, "left")) and names_in(left) & names_in(value):
+                done = self.assign(node, left, right)
+                if "noalias()" in text_of(left) and names_in(*done.parts[:1]) & names_in(*done.parts[2:]):
                     return (self.unread(node, "noalias() of what the target is in"),)
-                return (*first, self.part("assign", node, left, sign, value))
+                return (*first, done)
             case "update_expression":
                 target, sign = self.expression(field_of(node, "argument")), text_of(field_of(node, "operator"))[0]
                 return (self.part("assign", node, target, sign, self.whole(node, 1)),)

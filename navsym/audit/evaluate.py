@@ -207,7 +207,7 @@ class Evaluator:
             self.steps += 1
             return int(part.parts[0])
         value = self.value(part)
-        forbid(self.unit.language == "python" and is_truth(value), "a truth where a whole number is needed", part.line)
+        forbid(is_truth(value), "a truth where a whole number is needed", part.line)
         if (exact := constant_of(value)) is None or exact.denominator != 1:
             raise Unreadable("an index or size that is no constant", part.line)
         return int(exact)
@@ -485,7 +485,7 @@ class Evaluator:
             return self.inline(part, wants_value)
         if name not in self.frame and (sign := extreme_of(name, self.unit.language)) and len(arguments) == 2:
             return self.extreme(part, sign)
-        if name in JOINS and self.unit.language == "python" and len(arguments) == 1 and arguments[0].kind == "list":
+        if name in JOINS and len(arguments) == 1 and arguments[0].kind == "list":
             return self.join_arrays(JOINS[name], arguments[0])
         if name not in self.frame and is_known(name, self.unit.language):
             return call_known(name, [self.value(a) for a in arguments], self.unit)

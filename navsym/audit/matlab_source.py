@@ -80,7 +80,7 @@ class Reader(SourceReader):
             return self.unread(node, "several names assigned at once")
         if left.type == "function_call" and right.type == "matrix" and not named(right):
             return self.unread(node, "entries that are removed")
-        return self.part("assign", node, self.expression(left), "", self.expression(right))
+        return self.assign(node, left, right)
 
     def switch(self, node: Any) -> tuple[Part, ...]:
         """``switch`` over numbers as ``if``."""
@@ -99,16 +99,9 @@ class Reader(SourceReader):
 
     def loop(self, node: Any) -> Part:
         """``for i = a:b`` and ``for i = a:step:b``."""
-        iterator = next((c for c in named(node) if c.type == "iterator"), None)
-        parts = named(iterator) if iterator is not None else []
-        if len(parts) != 2 or parts[1].type != "range":
-            return self.unread(node, "a loop over something else than a range")
-        ends, one = self.several(named(parts[1])), self.whole(node, 1)
-        step = ends[1] if len(ends) == 3 else one
-        if step.kind not in ("number", "minus"):
-            return self.unread(node, "a loop with a step that is no number")
-        stop = self.part("op", node, "+" if step.kind == "number" else "-", ends[-1], one)
-        return self.part("for", node, text_of(parts[0]), ends[0], stop, step, self.block(find_body(node)))
+        name, source = named(next(c for c in named(node) if c.type == "iterator"))
+        ends = self.several(named(source)) if source.type == "range" else ()
+        return self.count(node, name, source, (*ends[:1], *ends[-1:], *ends[1:-1]), True)
 
     def read_expression(self, node: Any) -> Part | None:
         match node.type:

@@ -205,13 +205,10 @@ class Reader(SourceReader):
 
     def loop(self, node: Any) -> Part:
         """``for i in range(...)``."""
-        name, source = field_of(node, "left"), self.expression(field_of(node, "right"))
-        is_range = source.kind == "call" and source.parts[0] == "range" and 1 <= len(source.parts[1]) <= 3
-        if name.type != "identifier" or not is_range:
-            return self.unread(node, "a loop over something else than a range")
-        given, zero, one = source.parts[1], self.whole(node, 0), self.whole(node, 1)
-        start, stop, step = [(zero, *given, one), (*given, one), given][len(given) - 1]
-        return self.part("for", node, text_of(name), start, stop, step, self.block(field_of(node, "body")))
+        source = self.expression(field_of(node, "right"))
+        given = source.parts[1] if source.kind == "call" and source.parts[0] == "range" else ()
+        ends = (self.whole(node, 0), *given) if len(given) == 1 else given
+        return self.count(node, field_of(node, "left"), field_of(node, "right"), ends, False)
 
     def effect(self, node: Any) -> tuple[Part, ...]:
         """What an expression that stands alone writes."""
@@ -219,9 +216,7 @@ class Reader(SourceReader):
             case "assignment":
                 return self.assignment(node)
             case "augmented_assignment":
-                sign = text_of(field_of(node, "operator"))[:-1]
-                left, right = self.fields(node, "left", "right")
-                return (self.part("assign", node, left, sign, right),)
+                return (self.assign(node, field_of(node, "left"), field_of(node, "right")),)
             case "call":
                 return (self.part("do", node, self.expression(node)),)
             case "string" | "ellipsis" if not any(inner.type == "interpolation" for inner in descend(node)):

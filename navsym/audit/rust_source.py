@@ -32,7 +32,6 @@ STRING, WRITING = re.compile(r'"(\\.|[^"\\])*"'), re.compile(r"(?<![=!<>])=(?!=)
 INSIDE, OWNER = ("self", "Self", "crate", "super"), "type "
 OPEN = "which each type of a trait may define otherwise"
 DEFINING = ("struct_item", "enum_item", "union_item", "type_item", "macro_definition")
-SIGNS = ("", "+=", "-=", "*=", "/=", "%=")
 
 
 def type_of(text: str) -> tuple[str, tuple[int, ...] | None]:
@@ -57,7 +56,6 @@ def type_of(text: str) -> tuple[str, tuple[int, ...] | None]:
 class Reader(SourceReader):
     """Walks the syntax tree of Rust.
 
-    pointers     : references that the function being read declares
     foreign      : names that ``use`` brings from elsewhere, or under another name, and numbers of templates
     defined      : the types and macros of the file
     """
@@ -66,7 +64,6 @@ class Reader(SourceReader):
     REALS = OPEN_TYPES
     OPEN = ("if_expression", "for_expression", "block", "expression_statement")
 
-    pointers: set[str] = field(default_factory=set)
     foreign: set[str] = field(default_factory=set)
     defined: set[str] = field(default_factory=set)
 
@@ -172,13 +169,11 @@ class Reader(SourceReader):
 
     def effect(self, node: Any) -> tuple[Part, ...]:
         """What an expression that stands alone does."""
+        if (moved := self.set_again(node)) is not None:
+            return (moved,)
         match node.type:
-            case "assignment_expression" if (moved := text_of(field_of(node, "left"))) in self.pointers:
-                names = identifiers_in(node)
-                return (self.part("moved", node, moved, "a reference that is set again", names, False),)
-            case "assignment_expression" | "compound_assignment_expr" if text_of(field_of(node, "operator")) in SIGNS:
-                left, right = self.fields(node, "left", "right")
-                return (self.part("assign", node, left, text_of(field_of(node, "operator"))[:-1], right),)
+            case "assignment_expression" | "compound_assignment_expr":
+                return (self.assign(node, field_of(node, "left"), field_of(node, "right")),)
             case "if_expression":
                 return (self.branch(node, self.block),)
             case "for_expression":
@@ -250,15 +245,10 @@ class Reader(SourceReader):
 
     def loop(self, node: Any) -> Part:
         """``for i in 0..n``."""
-        name, source = field_of(node, "pattern"), field_of(node, "value")
-        ends = named(source) if source.type == "range_expression" else []
-        if name.type != "identifier" or len(ends) != 2:
-            return self.unread(node, "a loop over something else than a range")
-        start, stop = map(self.expression, ends)
-        one = self.whole(node, 1)
-        if any(text_of(child) == "..=" for child in source.children):
-            stop = self.part("op", source, "+", stop, one)
-        return self.part("for", node, text_of(name), start, stop, one, self.block(field_of(node, "body")))
+        source = field_of(node, "value")
+        ends = self.several(named(source)) if source.type == "range_expression" else ()
+        is_closed = any(text_of(child) == "..=" for child in source.children)
+        return self.count(node, field_of(node, "pattern"), source, ends, is_closed)
 
     def read_expression(self, node: Any) -> Part | None:
         match node.type:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import functools
 import importlib
 import re
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable, Iterator, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
 from typing import Any, ClassVar
@@ -17,6 +17,7 @@ DEPTH = 200
 SIZE = 2_000_000
 NODES = 400_000
 DECIMAL = re.compile(r"(?=\.?\d)\d*\.?\d*(e[+-]?\d{1,3})?", re.ASCII | re.IGNORECASE)
+ADDRESS = re.compile(r"&\s*[A-Za-z_]\w*", re.ASCII)
 COMMENTS = ("comment", "line_continuation", "line_comment", "block_comment")
 
 
@@ -216,6 +217,7 @@ class SourceReader:
 
     places : name that the file defines -> what is around each of its definitions, the outermost first
     opened : namespaces and classes whose names are known elsewhere, too
+    pointers : pointers, arrays and references that the function being read declares
 
     A language has ``read_file``, ``read_statement``, ``read_expression``, which give None for what is outside of it,
     ``places_open_to``, the places whose names a bare name may mean at a node, or a member of the own object,
@@ -241,6 +243,7 @@ class SourceReader:
     shift: int = 0
     places: dict[str, set[tuple[str, ...]]] = field(default_factory=dict)
     opened: set[str] = field(default_factory=set)
+    pointers: set[str] = field(default_factory=set)
 
     @classmethod
     def read_text(cls, text: str, unit: Unit) -> Part:
@@ -316,7 +319,7 @@ class SourceReader:
                 name = "".join(text_of(node).split())
                 is_name = re.fullmatch(r"[^\W\d][\w.]*", name) is not None
                 return self.part("name", node, name) if is_name else self.refuse(node, "a member of an expression")
-            case "parenthesized_expression" | "parenthesis" if len(named(node)) == 1:
+            case "parenthesized_expression" | "parenthesis" | "condition_clause" if len(named(node)) == 1:
                 return self.expression(named(node)[0])
             case "binary_expression" | "binary_operator" | "boolean_operator" | "comparison_operator":
                 if len(sides := named(node)) == 2:
@@ -379,6 +382,31 @@ class SourceReader:
         if sign not in self.UNARY:
             return self.refuse(node, f"the operator {sign}")
         return self.part(self.UNARY[sign], node, self.expression(operand))
+
+    def set_again(self, node: Any) -> Part | None:
+        """A pointer or reference that leads elsewhere from here on; None for other statements."""
+        name, given = text_of(field_of(node, "left") or field_of(node, "argument")), text_of(field_of(node, "right"))
+        if name not in self.pointers or node.type not in ("assignment_expression", "update_expression"):
+            return None
+        is_exact = ADDRESS.fullmatch(given) is not None and given[1:].strip() not in self.pointers
+        return self.part("moved", node, name, "a pointer that is set again", identifiers_in(node), is_exact)
+
+    def assign(self, node: Any, left: Any, right: Any) -> Part:
+        """An assignment, also with an operator for arithmetic."""
+        sign = text_of(field_of(node, "operator")).removesuffix("=")
+        if sign and self.OPERATORS.get(sign, ("",))[0] != "op":
+            return self.unread(node, f"the assignment {sign}=")
+        return self.part("assign", node, self.expression(left), sign, self.expression(right))
+
+    def count(self, node: Any, name: Any, source: Any, ends: Sequence[Part], is_closed: bool) -> Part:
+        """A loop from a start to a stop, which belongs to it where it is closed, perhaps with a step."""
+        if name.type != "identifier" or not 2 <= len(ends) <= 3:
+            return self.unread(node, "a loop over something else than a range")
+        start, stop, step = (*ends, one := self.whole(source, 1))[:3]
+        if is_closed and step.kind not in ("number", "minus"):
+            return self.unread(node, "a loop with a step that is no number")
+        stop = self.part("op", source, "-" if step.kind == "minus" else "+", stop, one) if is_closed else stop
+        return self.part("for", node, text_of(name), start, stop, step, self.block(find_body(node)))
 
     def literal(self, node: Any, text: str, is_real: bool) -> Part:
         """A number in decimal digits."""

@@ -574,6 +574,7 @@ def quotient(unit: Unit, sign: str, a: Value, b: Value) -> Value:
     whole = [isinstance(v, Scalar) and v.number in LIMITS for v in (a, b)]
     if sign == "/" and not (unit.rules.integer and all(whole)):
         return as_real(map_cells(divide, a, b))
+    forbid(sign not in ("/", "//", "%"), f"the operator {sign}")
     x, y = constant_of(a), constant_of(b)
     if x is None or y is None or y == 0 or not all(whole) or x < 0 or y < 0:
         raise Unreadable("a quotient or remainder of integers that are no constants")

@@ -224,3 +224,9 @@ def test_the_formulas_of_a_python_example_are_what_python_computes(file):
 def test_numbers_are_read_exactly(tmp_path):
     result = read(tmp_path, "float f(void) { return 0.1f + 1e-7; }")
     assert result.cases[0].returned.tree.args[0] == Fraction("0.1") + Fraction("1e-7")
+
+
+@pytest.mark.parametrize("sign", [">>", "<<", "|", "&", "^"])
+def test_an_assignment_with_an_operator_on_bits_is_no_quotient(tmp_path, sign):
+    result = read(tmp_path, f"def f(a):\n    n = 9\n    n {sign}= 2\n    y = a * n\n    return y\n", end=".py")
+    assert final(result, "y") == f"the assignment {sign}="
