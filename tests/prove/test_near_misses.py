@@ -114,3 +114,15 @@ def test_what_fails_on_a_strip_is_refuted_however_thin_the_strip_is(text, given,
 
 def test_an_order_that_is_lost_by_a_tiny_coefficient_is_refuted():
     assert nav.prove("exp(eps) = 1 + eps + 1e-20*eps", order={"eps": 2}).status == REFUTED
+
+
+def test_an_absolute_value_of_a_product_is_the_product_of_absolute_values_however_thin_the_strip_between_its_zeros():
+    left, right = "abs((x - y)*(x - y - 6e-9))", "abs(x - y)*abs(x - y - 6e-9)"
+    assert nav.prove(f"{left} = {right}").status == PROVED
+    assert nav.prove(f"{left} = {right} + 1e-40").status == REFUTED
+
+
+def test_what_must_exist_bounds_what_it_is_made_of():
+    assert nav.prove("x**2 <= 1", exists="acos(x)").status == PROVED
+    assert nav.prove("x**2 <= 1 - 1e-30", exists="acos(x)").status == REFUTED
+    assert nav.prove("x**2 <= 1").status == REFUTED

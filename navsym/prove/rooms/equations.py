@@ -133,8 +133,11 @@ def by_cases(goal: Any, sample: list[arb]) -> Iterator[Proof]:
 
 
 def by_modulus(goal: Any, sample: list[arb]) -> Iterator[Proof]:
-    """sqrt(u) and |u| as what they are where its sign is known."""
+    """|u v| as |u| |v|, and sqrt(u) and |u| as what they are where its sign is known."""
     for part in dict.fromkeys(filter(is_root, subterms(goal.term))):
+        if part[0] == "abs" and len(factors := player.list_factors(part[1])) > 1:
+            yield rewrite_atom(write_term(part), write_term(("*", *(("abs", f) for f in factors))))
+            continue
         inside = to_sympy(part[1])
         if inside.has(sp.sin, sp.cos) and sp.count_ops(inside) < 60:
             inside = sp.trigsimp(factor(inside))  # by sin(x)**2 + cos(x)**2 = 1
