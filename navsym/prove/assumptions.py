@@ -8,6 +8,7 @@ from collections.abc import Callable, Sequence
 import sympy as sp
 
 from navsym.claims.statement import Box
+from navsym.prove.sampling.points import ranges_of
 from navsym.prove.signs import Sign, prove_sign
 from navsym.prove.wording import expression_text
 
@@ -61,7 +62,11 @@ def is_nonnegative(expression: sp.Basic, box: Box) -> bool:
 
 def is_nonzero(expression: sp.Basic, box: Box) -> bool:
     """True when the expression is proved to vanish nowhere on the box."""
-    return prove_sign(expression, box, Sign.NONZERO).at_least(Sign.NONZERO)
+    if is_positive(expression, box) or is_positive(-expression, box):
+        return True
+    limits = ranges_of(sorted(expression.free_symbols, key=str), box).values()
+    has_parts = any(limit.parted for limit in limits)  # of two signs, with a gap between
+    return has_parts and prove_sign(expression, box, Sign.NONZERO).at_least(Sign.NONZERO)
 
 
 #: What is taken for granted of the sides: where it is found, in words, and when the box guarantees it.
