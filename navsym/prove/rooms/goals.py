@@ -259,7 +259,7 @@ def vanishes(goal: Any) -> bool:
 
 
 def values_of(goal: Any, term: Term) -> list[arb]:
-    """Balls of another term at the points of a goal; at those alone where all has a value, if others have both signs."""
+    """Balls of another term at the points of a goal; of both signs, at those alone where all has a value."""
     values = sample_goal(goal._replace(term=term))
     if goal.exists and is_below(values) and is_below(values, -1):
         return sample_goal(goal._replace(term=term), is_strict=True)
