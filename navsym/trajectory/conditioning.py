@@ -122,7 +122,7 @@ def extreme_values(matrix: flint.fmpq_mat, digits: int) -> tuple[int, tuple[Frac
 
     A proposal, which its reader proves. Entries of very different sizes hide eigenvalues at few bits.
     """
-    sizes = [abs(x) for x in matrix.entries() if x]
+    sizes = [abs(x) for x in matrix.entries() if x] or [flint.fmpq(1)]
     before, bits = None, min(128 + int(max(sizes) / min(sizes)).bit_length(), 10000)
     while bits <= 20000:
         with flint.ctx.workprec(bits):

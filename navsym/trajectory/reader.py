@@ -309,6 +309,9 @@ def columns_of(header: Sequence[str], log: Log, line: str) -> dict[str, int]:
             message = f"expected one column for {name}; got {len(places)}; remove or rename one"
             raise DuplicateError(message, where=where)
         found[name] = places[0]
+    deviations = ", ".join(x for x in plain if x.startswith(("sd", "std", "sigma")))
+    if deviations:
+        log.warnings.append(f"{line}: {deviations} not read: give one deviation as sigma, or write an RTKLIB .pos")
     log.units = tuple(unit_of(name, header[place], where) for name, place in found.items())
     for place, unit in zip(found.values(), log.units, strict=True):
         if unit.factor != 1 or unit.radian:

@@ -424,8 +424,9 @@ SLOW, FITTING, SMALLEST_WEIGHT = (3.0, 10.0, 30.0, 100.0), 0.2, 0.03
 def explanations(fit: Fit, own: Array) -> list[tuple[float, Array]]:
     """The likeliest point (9,) of the region and others, with weights: slow errors and slow motion look alike.
 
-    The others have no coloured error, or one of a given correlation time, or a steady last derivative. Each weighs as its likelihood does, times
-    ``FITTING`` for each parameter (Hoeting, Madigan, Raftery, Volinsky 1999). Errors that drift have no others.
+    The others have no coloured error, or one of a given correlation time, or a steady last derivative. Each weighs as
+    its likelihood does, times ``FITTING`` for each parameter (Hoeting, Madigan, Raftery, Volinsky 1999). Errors that
+    drift have no others.
     """
     if np.isfinite(own[6]):
         return [(1.0, own)]

@@ -82,6 +82,7 @@ def check_against_enumeration(seeds):
     return compared
 
 
+@pytest.mark.long
 def test_the_design_is_the_best_of_all_purchases_that_a_linear_programme_finds():
     assert check_against_enumeration(range(8)) >= 4
 

@@ -280,3 +280,10 @@ def test_repair_keeps_a_place_whose_deviations_are_not_numbers(tmp_path):
     track = read_track(write(tmp_path, POS.replace("3.4239", "nan")), "repair")
     assert track.t.size == 2 and track.sigma is None
     assert any("standard deviations not used" in repair for repair in track.repairs)
+
+
+def test_deviations_in_a_csv_are_not_passed_over_in_silence(tmp_path):
+    """They are read from RTKLIB files only; whoever writes them into a CSV hears of it."""
+    rows = "".join(f"{k},{45 + 1e-4 * k},10,100,5,5,5\n" for k in range(8))
+    (warning,) = read_track(write(tmp_path, "t,lat,lon,height,sdn (m),sde (m),sdu (m)\n" + rows)).warnings
+    assert warning.startswith("line 1: sdn, sde, sdu not read: give one deviation as sigma")
