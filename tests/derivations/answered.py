@@ -36,6 +36,11 @@ ANSWERED: dict[str, dict[str, str]] = {
         "trajectory:limit.yawing": "100 sin(pi/4) m/s times the greatest turn rate of the printed heading",
         "trajectory:window.order": "7.4 is the cube root of 400",
     },
+    "ends_of_ranges_in_no_title": {
+        "joint_correction:2.condition2.height": "59560/8898289 is e^2",
+        "joint_correction:2.assumption1.orthodrome": "s <= 27/50 is 250 m/s over 465 m/s of the ground, rounded up",
+        "terrain_search:9.small": "a tenth of the speed",
+    },
     "moving_quantities_held_in_silence": {
         **dict.fromkeys(
             ("joint_correction:1.14.characteristic", "joint_correction:1.14.gains_unique"),

@@ -21,6 +21,7 @@ from navsym.claims.record import Record
 from navsym.prove.grant import UNCHECKED
 from tests.derivations.titles import (
     FIGURE,
+    ends_of_ranges_in_no_title,
     named_by,
     numbers_of_no_statement,
     numbers_under_a_general_title,
@@ -218,6 +219,7 @@ RULES: tuple[Callable[[Judged], list[str]], ...] = (
     sides_that_nothing_computes,
     figures_that_choose_alone,
     moving_quantities_held_in_silence,
+    ends_of_ranges_in_no_title,
     numbers_of_no_statement,
     numbers_under_a_general_title,
     ranges_narrower_than_the_title,

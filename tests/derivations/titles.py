@@ -163,6 +163,16 @@ def end_of(text: str) -> sp.Expr:
     return sp.oo if text == "oo" else -sp.oo if text == "-oo" else parse(re.sub(r"(\d) (?=pi)", r"\1*", text), {})
 
 
+def ends_of_ranges_in_no_title(judged) -> list[str]:
+    """What was decided between two numbers only says in its title how far: each end but 0, 1 and -1 stands there."""
+    wrong = []
+    for r in (r for r in judged.records if r.status.holds):
+        pairs = [(low, high) for _, _, low, high in RANGE.findall(r.scope) if "oo" not in low + high]
+        ends = {abs(end_of(end)) for pair in pairs for end in pair} - {0, 1}
+        wrong += [] if {Fraction(str(end)) for end in ends if end.is_Rational} <= numbers_of(r.title) else [r.id]
+    return wrong
+
+
 def ranges_narrower_than_the_title(judged) -> list[str]:
     """What a title says of T <= c, or of every T, was decided for all of these."""
     wrong = []
