@@ -45,7 +45,7 @@ def arguments_corrected():
     return fact(True, S.free_symbols <= known, method, PROVED, scope=scope, meaning=meaning)
 
 
-@claim("3 | (3) for course and log: with S1 and S2 differentiated by hand, S1 dpsi + S2 d is the linear part of S.")
+@claim("3 | (3), latitudes to 1.5 rad: with S1, S2 differentiated by hand, S1 dpsi + S2 d is the linear part of S.")
 def linearised():
     errors = (*RECKONING.errors, *RECKONING.sensor_errors)
     along = S.subs({e: scale * e for e in errors}, simultaneous=True)
@@ -83,7 +83,9 @@ def unsteady():
     )
 
 
-@claim("2.form | (2): the latitude error obeys (2); to first order the longitude error adds only a latitude term.")
+@claim(
+    "2.form | (2), to 1.5 rad of latitude: that error obeys (2); to first order the other adds only a latitude term."
+)
 def feedback():
     S1, S2 = RECKONING.linear_parts()
     sensors = S2 * sp.Matrix(RECKONING.sensor_errors)
@@ -129,7 +131,7 @@ CLAIMS_4 = claims(
     "the identity for their block of A; it is (3) that (4) samples; by hand: due east at 45 degrees with v tau = R "
     "the entry below the diagonal is sqrt(2), not 0",
     lambda: Equation(sp.eye(2), discretised(RECKONING.linear_parts()[0], tau), SPHERE),
-    "4.type* | (4): the models that (4) switches between are of type (3): A = exp(S1 tau) for the position errors.",
+    "4.type* | (4), to 1.5 rad of latitude: its models are of type (3): A = exp(S1 tau) for the position errors.",
     lambda: Equation(
         sp.Matrix(
             [

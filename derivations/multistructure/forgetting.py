@@ -98,7 +98,7 @@ def the_worst_probability():
 
 @claim("10.error.steady")
 def errors_do_not_pile_up():
-    """(10) with rho^i, two modes: an error of log-odds of 2 c/(1 - kappa) stays; a step leaves kappa of the rest.
+    """(10), rho^i, two modes, kappa to 0.99: an error of 2 c/(1 - kappa) stays; a step leaves kappa of the rest.
 
     A step multiplies by kappa and adds at most 2 c: what is missing to the bound is multiplied by kappa, too.
     """

@@ -33,18 +33,20 @@ def geocentric_tangent():
 
 
 CLAIMS_EARTH = claims(
-    "earth.ellipse | The foot of the normal satisfies the equation of the meridian ellipse.",
+    "earth.ellipse | The foot of the normal is on the meridian ellipse, e from 0.01 to 0.9, latitudes to 1.5 rad.",
     lambda: Equation(sp.Integer(1), ellipsoid.ellipse_condition(phi_e, a, e), ELLIPSOID),
     "earth.tan_phi | Tangent of the geocentric latitude, as printed. | undecidable: the exponent of e is lost: at "
     "h = 0 the factor has to be 1 - e^2, as in the printed radius two lines below; by hand: for e = 0.082 the "
     "factor 0.918 stands for 0.9933",
     lambda: Equation((1 - a * e / (a + h * ROOT)) * sp.tan(phi_e), geocentric_tangent(), ELLIPSOID),
-    "earth.tan_phi* | Tangent of the geocentric latitude.",
+    "earth.tan_phi* | Tangent of the geocentric latitude, to 1.5 rad; e from 0.01 to 0.9, a from 1 to 10, h to 10.",
     lambda: Equation((1 - a * e**2 / (a + h * ROOT)) * sp.tan(phi_e), geocentric_tangent(), ELLIPSOID),
 )
 
 
-@claim("earth.r | Distance from the centre of the Earth, squared; the printed root is the positive one.")
+@claim(
+    "earth.r | Distance from the centre, squared: latitudes to 1.5 rad, e from 0.01 to 0.9, a from 1 to 10, h to 10."
+)
 def geocentric_radius():
     inner = (a / ROOT + h) ** 2 * sp.cos(phi_e) ** 2 + (a * (1 - e**2) / ROOT + h) ** 2 * sp.sin(phi_e) ** 2
     axis, z = ellipsoid.meridian_point(phi_e, h, a, e)
@@ -110,14 +112,14 @@ CLAIMS_KINEMATICS = claims(
     lambda: Equation(list(rotation_part()), list(VELOCITY)),
     "kinematics.velocity* | Velocity relative to the Earth: omega x r plus the rate of (0, 0, r).",
     lambda: Equation(list(rotation_part() + sp.Matrix([0, 0, RATES[2]])), list(VELOCITY)),
-    "kinematics.phi_rate | Rate of latitude: northern speed over radius.",
+    "kinematics.phi_rate | Rate of latitude: northern speed over radius, from 1 to 10 in any unit.",
     lambda: Equation(V[1] / RADIUS, rates_from_velocity()[0], SHELL),
     "kinematics.lambda_rate | Rate of longitude with the cosine as a factor, as it came out of the scan. | scan: "
     "cos phi is to the power -1; the lost exponent reappears as the stray minus sign of the printed rho^(2), and "
     "kinematics.omega with V = omega x r gives V_1 = r cos(phi) d lambda/dt; by hand: at 60 degrees the meridians "
     "pass twice as fast as at the equator, not half as fast",
     lambda: Equation(V[0] / RADIUS * sp.cos(LATITUDE), rates_from_velocity()[1], SHELL),
-    "kinematics.lambda_rate* | Rate of longitude: eastern speed over the radius of the parallel.",
+    "kinematics.lambda_rate* | Rate of longitude: eastern speed over r cos(phi), r from 1 to 10, latitudes to 1.5 rad.",
     lambda: Equation(V[0] / (RADIUS * sp.cos(LATITUDE)), rates_from_velocity()[1], SHELL),
     "kinematics.r_rate | Rate of the radius: vertical speed.",
     lambda: Equation(V[2], rates_from_velocity()[2], SHELL),
@@ -133,13 +135,13 @@ def channel_factor(rate: int, speed: int) -> sp.Expr:
 
 
 CLAIMS_1 = claims(
-    "1.rho1 | rho of the latitude channel, driven by the northern speed.",
+    "1.rho1 | rho of the latitude channel, driven by the northern speed; radius from 1 to 10 in any unit.",
     lambda: Equation(1 / RADIUS, channel_factor(0, 1), SHELL),
     "1.rho2 | rho of the longitude channel, as it came out of the scan. | scan: the exponent -1 of cos phi was "
     "read as a minus sign of the numerator: the printed rate of longitude, two paragraphs above, has no such sign; "
     "by hand: -1/r at the equator, for a speed to the east",
     lambda: Equation(-1 / RADIUS * sp.cos(LATITUDE), channel_factor(1, 0), SHELL),
-    "1.rho2* | rho of the longitude channel, driven by the eastern speed.",
+    "1.rho2* | rho of the longitude channel, driven by the eastern speed; radius from 1 to 10, latitudes to 1.5 rad.",
     lambda: Equation(1 / (RADIUS * sp.cos(LATITUDE)), channel_factor(1, 0), SHELL),
     "1.rho3 | rho of the radius channel, driven by the vertical speed.",
     lambda: Equation(sp.Integer(1), channel_factor(2, 2), SHELL),

@@ -238,7 +238,7 @@ CLAIMS_6_4 = claims(
 )
 
 
-@claim("6.Np.rows | Row x of N_p, H Phi(x tau), is row (x^0, x^1, ...) of N_f times D_f, for every real x; n = 12.")
+@claim("6.Np.rows | Row x of N_p, H Phi(x tau), is row (x^0, x^1, ...) of N_f times D_f, for every positive x; n = 12.")
 def observability_row_by_row():
     x = sp.Symbol("x", positive=True)
     n = 12

@@ -30,6 +30,7 @@ class Paper:
     beyond      : claims on what the paper does not treat
     causes      : refuted claim -> the claim whose slip it only repeats
     scopes      : claims -> the sizes or values they are examined for, unless their statements name them; the first fits
+    moving      : names of quantities that move: a claim that takes one as constant, for poles or ranks, says so
     typed       : claims whose derived side is written down and not derived: short sums, identities of printed letters
     left_out    : printed statement -> why no claim judges it
 
@@ -51,6 +52,7 @@ class Paper:
     beyond: str = ""
     causes: Mapping[str, str] = field(default_factory=dict)
     scopes: Mapping[str, str] = field(default_factory=dict)
+    moving: str = ""
     typed: str = ""
     left_out: Mapping[str, str] = field(default_factory=dict)
 

@@ -36,6 +36,19 @@ ANSWERED: dict[str, dict[str, str]] = {
         "trajectory:limit.yawing": "100 sin(pi/4) m/s times the greatest turn rate of the printed heading",
         "trajectory:window.order": "7.4 is the cube root of 400",
     },
+    "ends_of_ranges_in_no_title": {
+        "joint_correction:2.condition2.height": "59560/8898289 is e^2",
+        "joint_correction:2.assumption1.orthodrome": "s <= 27/50 is 250 m/s over 465 m/s of the ground, rounded up",
+        "terrain_search:9.small": "a tenth of the speed",
+    },
+    "moving_quantities_held_in_silence": {
+        **dict.fromkeys(
+            ("joint_correction:1.14.characteristic", "joint_correction:1.14.gains_unique"),
+            "u is a variable of section 1, not the rate of the Earth",
+        ),
+        "joint_correction:3.1.overlap": "combinations of errors at one time: no motion enters",
+        "joint_correction:3.3.gains": "the gains cancel omega: the errors have a constant matrix",
+    },
     "ranges_narrower_than_the_title": {
         "guaranteed_velocity:range.y1.contacts": "T enters through s = T - tau alone",
         "guaranteed_velocity:2.6": "q is linear: its coefficients are compared",

@@ -21,6 +21,8 @@ from navsym.claims.record import Record
 from navsym.prove.grant import UNCHECKED
 from tests.derivations.titles import (
     FIGURE,
+    ends_of_ranges_in_no_title,
+    named_by,
     numbers_of_no_statement,
     numbers_under_a_general_title,
     ranges_narrower_than_the_title,
@@ -34,6 +36,10 @@ QUANTIFIERS = re.compile(r"\b(every|always|in general|whatever|on average|inevit
 #: A free choice: of a gain, an interval, a start.
 CHOICE = re.compile(
     r"\b(?:an?|An?|[Ss]ome|[Oo]ne) (?:[a-z]+ )?(?:gain|run|interval|start|window|step)s? (?:gives?|has|reach)"
+)
+#: Methods for systems with constant coefficients.
+AUTONOMOUS = frozenset(
+    "polynomial_of coefficients_of_polynomial observe observe_jointly charpoly eigenvals transition_matrix".split()
 )
 RANGE = re.compile(r"[\[(][^\])]*\d[^\])]*[\])]|n = \d|\d (to|and|or) \d")
 
@@ -171,6 +177,17 @@ def sides_of_one_expression(judged: Judged) -> list[str]:
     return [f"{file.name}:{line}" for file, found in read for line, (a, b) in found if ast.dump(a) == ast.dump(b)]
 
 
+def moving_quantities_held_in_silence(judged: Judged) -> list[str]:
+    """Poles, ranks and frequencies of a matrix are those of constant coefficients: what moves is called constant."""
+    moving, wrong = {*judged.paper.moving.split()}, []
+    for claim, r in zip(judged.claims, judged.records, strict=True):
+        named = {*re.findall(r"[A-Za-z]\w*", f"{r.title} {r.scope} {r.printed} {r.derived}")} & moving
+        is_told = re.search(r"\b(constant|frozen|turning|mu = 0)\b", f"{r.title} {r.scope}")
+        if named and r.status.holds and not is_told and {name for name, *_ in named_by(claim)} & AUTONOMOUS:
+            wrong.append(r.id)
+    return wrong
+
+
 def tolerances_wider_than_half_a_unit(judged: Judged) -> list[str]:
     """A figure is a whole number of units, twice the tolerance; what joins several figures says *within the digits*."""
     wrong = []
@@ -201,6 +218,8 @@ RULES: tuple[Callable[[Judged], list[str]], ...] = (
     tolerances_wider_than_half_a_unit,
     sides_that_nothing_computes,
     figures_that_choose_alone,
+    moving_quantities_held_in_silence,
+    ends_of_ranges_in_no_title,
     numbers_of_no_statement,
     numbers_under_a_general_title,
     ranges_narrower_than_the_title,

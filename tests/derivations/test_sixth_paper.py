@@ -16,7 +16,18 @@ from tests.derivations.rules import RULES, Judged
 
 #: What the verbs do not write: a model, a claim that rests on it, a count, a run, and an open question.
 MORE = '''
-u = sp.Symbol("u", real=True)
+u, v = sp.symbols("u v", real=True)
+SYSTEM = sp.Matrix([[-u]])
+
+
+@claim("3.pole | The system with u constant has the polynomial v + u.")
+def pole():
+    return Equation(printed=v + u, derived=SYSTEM.charpoly().eval(v))
+
+
+@claim("3.near | The slope is at most 1 for u in [0, 2].")
+def near():
+    return Bound(slope(), "<=", 1, {u: (0, 2)})
 
 
 def slope() -> sp.Expr:
@@ -96,6 +107,8 @@ FAULTS = (
     ("sides_that_nothing_computes", "derived=slope())", "derived=u + u - 3)"),
     ("sides_that_nothing_computes", 'typed="1 2"', 'typed="1 2 3.figure"'),
     ("figures_that_choose_alone", "The slope at sqrt(3) is 0.46.", "A run has the slope 0.46."),
+    ("ends_of_ranges_in_no_title", " for u in [0, 2].", "."),
+    ("moving_quantities_held_in_silence", "with u constant has", "has"),
     ("numbers_of_no_statement", "The slope at sqrt(3) is 0.46.", "The slope at sqrt(3) is 0.58."),
     ("numbers_under_a_general_title", "The slope is zero at 3/2.", "The slope is zero somewhere."),
     ("ranges_narrower_than_the_title", "for every w and t.", "for every v."),
@@ -122,12 +135,11 @@ def folder(tmp_path, monkeypatch):
     for number, printed, derived, more in pairs:
         nav.new_claim("sixth", number, printed=printed, derived=derived, folder=root / "papers", **more)
     path = root / "papers" / "sixth.py"
-    text = path.read_text(encoding="utf-8").replace("import Equation,", "import UNDECIDED, Equation,")
+    text = path.read_text(encoding="utf-8").replace("import Equation,", "import UNDECIDED, Bound, Equation,")
     text = text.replace("Status, claim", "Status, claim, fact")
-    remarks = "3.turning 3.run 3.steep 3.figure 3.open"
-    card = (
-        f'    remarks="{remarks}",\n    causes={{}},\n    typed="1 2",\n    left_out={{"a figure": "no numbers"}},\n)\n'
-    )
+    remarks = "3.pole 3.near 3.turning 3.run 3.steep 3.figure 3.open"
+    card = f'    remarks="{remarks}",\n    causes={{}},\n    moving="u",\n    typed="1 2",\n'
+    card += '    left_out={"a figure": "no numbers"},\n)\n'
     path.write_text(re.sub(r"^\)\n", lambda _: card, text, count=1, flags=re.MULTILINE) + MORE, encoding="utf-8")
     monkeypatch.chdir(root)
     monkeypatch.setattr(navsym_papers, "__path__", [*navsym_papers.__path__, str(root / "papers")])

@@ -92,6 +92,19 @@ def named_in(body: list[ast.AST], scope: dict[str, object]) -> Iterator[tuple[st
             yield node.attr, getattr(scope.get(node.value.id), node.attr, None)
 
 
+def named_by(claim: Claim) -> Iterator[tuple[str, object, bool]]:
+    """What the source of a claim names, with its value and whether its own source does; then what it calls names."""
+    derive = inspect.unwrap(claim.derive)
+    waiting, seen = [(body_of(claim), derive.__globals__, True)], set()
+    while waiting:
+        body, scope, is_own = waiting.pop()
+        for name, value in named_in(body, scope):
+            yield name, value, is_own
+            if isinstance(value, FunctionType) and value.__module__.startswith(f"{PAPERS}.") and value not in seen:
+                seen.add(value)
+                waiting.append(([read_function(value)], value.__globals__, False))
+
+
 def source_texts(claim: Claim) -> Iterator[str]:
     """The source of a claim without its docstring, what it closes over, and constants of what it calls."""
     derive = inspect.unwrap(claim.derive)
@@ -99,17 +112,10 @@ def source_texts(claim: Claim) -> Iterator[str]:
     yield from (
         str(value) for value in (*(c.cell_contents for c in derive.__closure__ or ()), *(derive.__defaults__ or ()))
     )
-    waiting, seen = [(body_of(claim), derive.__globals__, True)], set()
-    while waiting:
-        body, scope, is_own = waiting.pop()
-        for name, value in named_in(body, scope):
-            if isinstance(value, FunctionType) and value.__module__.startswith(f"{PAPERS}.") and value not in seen:
-                seen.add(value)
-                waiting.append(([read_function(value)], value.__globals__, False))
-            elif isinstance(value, int | str | Fraction | sp.Basic | tuple | list | dict) and (
-                is_own or name.isupper()
-            ):
-                yield str(value)
+    for name, value, is_own in named_by(claim):
+        is_text = isinstance(value, int | str | Fraction | sp.Basic | tuple | list | dict)
+        if is_text and (is_own or name.isupper()):
+            yield str(value)
 
 
 def values_of(record: Record) -> Iterator[Fraction]:
@@ -155,6 +161,16 @@ def numbers_of_no_statement(judged) -> list[str]:
 def end_of(text: str) -> sp.Expr:
     """An end of a range, as titles and scopes write it: 4 pi/3, 3*pi/2, oo."""
     return sp.oo if text == "oo" else -sp.oo if text == "-oo" else parse(re.sub(r"(\d) (?=pi)", r"\1*", text), {})
+
+
+def ends_of_ranges_in_no_title(judged) -> list[str]:
+    """What was decided between two numbers only says in its title how far: each end but 0, 1 and -1 stands there."""
+    wrong = []
+    for r in (r for r in judged.records if r.status.holds):
+        pairs = [(low, high) for _, _, low, high in RANGE.findall(r.scope) if "oo" not in low + high]
+        ends = {abs(end_of(end)) for pair in pairs for end in pair} - {0, 1}
+        wrong += [] if {Fraction(str(end)) for end in ends if end.is_Rational} <= numbers_of(r.title) else [r.id]
+    return wrong
 
 
 def ranges_narrower_than_the_title(judged) -> list[str]:
