@@ -187,7 +187,7 @@ class Machine(Evaluator):
         closures = [name for name in called_in(statement) if self.is_closure(name)]
         names = {*writes.names, *(self.frame if closures else ())}
         names |= {self.canonical(name + ".").rstrip(".->") for name in names}
-        for name in names | {base for n in names if self.variable_shape(base := n.rpartition(".")[0])}:
+        for name in sorted(names | {base for n in names if self.variable_shape(base := n.rpartition(".")[0])}):
             if name in self.frame or not (name in {*self.file_names, *self.unit.macros} or owners_in(self.unit, name)):
                 lose(self.variable(name), unread)
                 self.lose_members(name, unread)
