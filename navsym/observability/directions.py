@@ -2,8 +2,9 @@
 
 Columns N with h N = 0 for every measurement and F N - N' in their own span stay unseen by every derivative: the
 derivative of h N = 0 is (D h) N = h (F N - N') taken once more. Both are polynomial identities. Where they come from
-does not matter: elimination of the rows, or a guess of low degree in the symbols (a symmetry such as a turn about
-gravity, a change of scale, a common shift) that is fitted at points modulo a prime and rebuilt in whole numbers.
+does not matter: elimination of the rows, the generic leaf of the tree, or a guess of low degree in the symbols (a
+symmetry such as a turn about gravity, a change of scale, a common shift) that is fitted at points modulo a prime and
+rebuilt in whole numbers.
 """
 
 from __future__ import annotations
@@ -28,6 +29,7 @@ from navsym.observability.linear import (
 from navsym.observability.motion import Motion, residue_chains
 from navsym.observability.reduction import UnitBasis
 from navsym.observability.ring import Poly, Ring
+from navsym.observability.tree import leaf_on
 
 #: Terms of the rows that are eliminated for a moving model, unknowns of a guess, and the size of a rebuilt fraction.
 ROW_TERMS, UNKNOWNS, SIZE = 1500, 700, 10**6
@@ -45,7 +47,14 @@ def find_unobservable(rows: Matrix, motion: Motion, rank: int, point: Sequence[i
         guess_unobservable(rows, motion, rank, (0, 1))
         or (exhibit_unobservable(rows, motion, rank, point) if not motion.roots else None)
         or guess_unobservable(rows, motion, rank, (2, 3))
+        or (unseen_generically(rows, motion, rank) if not motion.roots else None)
     )
+
+
+def unseen_generically(rows: Matrix, motion: Motion, rank: int) -> Matrix | None:
+    """The columns of the generic leaf; None where its rows get long."""
+    leaf = leaf_on([], rows, motion.ring, motion)
+    return leaf.unseen if leaf is not None and leaf.rank == rank else None
 
 
 def resting_directions(rows: Matrix, motion: Motion, rank: int, point: Sequence[int]) -> Matrix | None:
