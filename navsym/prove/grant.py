@@ -231,7 +231,8 @@ def grant_refutation(documents: Sequence[Document], verdict: Verdict) -> Verdict
             for name, limits in document["symbols"].items()
         }
         try:
-            refuted = replace(verdict, certificate=refute_document(documents, document, place))
+            certificate = refute_document(documents, document, place)
+            refuted = replace(verdict, counterexample={**point, **place}, certificate=certificate)
         except REFUSALS as refusal:
             why = str(refusal)
             continue
