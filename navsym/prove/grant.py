@@ -34,8 +34,8 @@ from navsym.prove.wording import decimal_ends
 UNCHECKED = "unchecked: no certificate of this statement"
 BITS, MORE_BITS = (128, 1024, 8192), (20_000, 190_000)
 POINTS, MORE_POINTS = 18, 72
-#: Letters of a coordinate that is short enough for a reader.
-SHORT = 3
+#: Letters of a coordinate that is short enough for a reader, and of one that is too long.
+SHORT, LONG = 3, 40
 WAVES = ("sin", "cos", "tan", "cot", "sec", "csc")
 SHARE = "share"
 #: Kinds of certificates that give a statement its verdict.
@@ -231,7 +231,8 @@ def grant_refutation(documents: Sequence[Document], verdict: Verdict) -> Verdict
             for name, limits in document["symbols"].items()
         }
         try:
-            refuted = replace(verdict, certificate=refute_document(documents, document, place))
+            certificate = refute_document(documents, document, place)
+            refuted = replace(verdict, counterexample={**point, **place}, certificate=certificate)
         except REFUSALS as refusal:
             why = str(refusal)
             continue
@@ -265,12 +266,22 @@ def shorten_point(document: Document, point: Mapping[str, str]) -> dict[str, str
     kept = {name for name, text in point.items() if len(text) <= SHORT or (is_wave and "pi" in text)}
     shorter = dict(point)
     for name in [n for n in point if n in box and n not in kept] if not others else ():
-        for number in (fmpq(n, d) for n, d in ((1, 1), (2, 1), (3, 1), (1, 2), (-1, 1))):
-            trial = shorter | {name: str(number)}
-            if player.is_inside(player.number(number), box[name]) and fails_at(case, trial):
-                shorter = trial
-                break
+        with ctx.workprec(BITS[1] if len(shorter[name]) > LONG else ctx.prec):
+            for number in list_short_numbers(shorter[name]):
+                trial = shorter | {name: str(number)}
+                if player.is_inside(player.number(number), box[name]) and fails_at(case, trial):
+                    shorter = trial
+                    break
     return shorter
+
+
+def list_short_numbers(text: str) -> Iterator[fmpq]:
+    """Simple numbers, and those on both sides of a long fraction with few decimals."""
+    yield from (fmpq(n, d) for n, d in ((1, 1), (2, 1), (3, 1), (1, 2), (-1, 1)))
+    if len(text) > LONG and (long := re.fullmatch(r"(-?\d+)/(\d+)", text, re.ASCII)):
+        for unit in (10**k for k in (1, 2, 3, 6, 9, 12, 24, 48)):
+            below = int(long[1]) * unit // int(long[2])
+            yield from (fmpq(below, unit), fmpq(below + 1, unit))
 
 
 def fails_at(case: Any, point: Mapping[str, str]) -> bool:

@@ -302,3 +302,14 @@ def test_what_sympy_leaves_to_be_done_without_ends_or_values_is_refused(left, me
         nav.prove(left, "=", 1)
     with pytest.raises(nav.NavsymError, match=r"got (Integral|Limit|Derivative)"):
         to_text(left)
+
+
+def test_a_counterexample_names_every_symbol_of_the_text():
+    """What the search cancels has a value there all the same: without it nobody could try the text at the point."""
+    assert set(nav.prove("x + y - y > 1", x=("0", "1"), y=("2", "5")).counterexample) == {"x", "y"}
+
+
+def test_a_counterexample_near_an_end_has_few_digits():
+    """A pole at the end of a range was met at a fraction of 300 digits; a few nines show the same."""
+    point = nav.prove("tanh(asin(x))/acos(y) > -9588", x=("-1", "0"), y=("-1/2", "1")).counterexample
+    assert max(map(len, point.values())) < 45, point
