@@ -103,6 +103,7 @@ class Evaluator:
     moved   : pointers that were set again -> the names that they may lead to now, None for any
     order   : of what is read and written that others may know
     outputs : what the last function of MATLAB that was read returned
+    parted : objects of C++ to whose parts a method of theirs has led, which were written
     """
 
     block: ClassVar[Any]
@@ -137,6 +138,7 @@ class Evaluator:
     seconds: list[Variable] = field(default_factory=list)
     moved: dict[str, tuple[str, ...] | None] = field(default_factory=dict)
     order: Order = field(default_factory=Order)
+    parted: set[str] = field(default_factory=set)
 
     @property
     def unit(self) -> Unit:
@@ -247,11 +249,15 @@ class Evaluator:
             raise Unreadable("an index of an expression")
         elif "()" in part.parts[0]:
             self.require_entries(part.parts[0])
+        forbid(part.parts[0] in self.parted, "an entry of what one of its methods may have written")
         variable = self.variable(part.parts[0])
         return variable, *self.resolve(variable, indices)
 
     def require_entries(self, name: str) -> None:
         """Refuse the call of a function that is not known: two calls may give two values, as of a clock."""
+        base, _, method = name.replace("->", ".").rpartition(".")
+        known = self.find(base) if base and self.unit.language == "cpp" else None
+        forbid(known is not None and (known.shape or any(known.cells)), f"the method {method}")  # M.topRows(1) is in M
         may_be = self.unit.language in ("cpp", "matlab") or (self.unit.language == "c" and "()" in name)
         is_lost = name in self.globals and self.globals[name].all_unread is not None  # it has a better reason
         if name not in self.frame and not is_lost and not (may_be and self.unit.is_array(name)):
@@ -262,7 +268,8 @@ class Evaluator:
         sizes = variable.shape
         if sizes and len(sizes) == 2 and 1 in sizes and len(indices) == 1 and self.unit.language in ("matlab", "cpp"):
             spot = self.index_range(indices[0], max(sizes))
-            shape = (1, *spot[1]) if sizes[0] == 1 and spot[1] else spot[1]
+            is_column = indices[0].kind == "slice" and indices[0].parts == (None, None)  # w(:), of a row, too
+            shape = (1, *spot[1]) if sizes[0] == 1 and spot[1] and not is_column else spot[1]
             return [(0, k) if sizes[0] == 1 else (k, 0) for k in spot[0]], shape
         if sizes and len(sizes) == 2 and len(indices) == 1 and self.unit.language in ("cpp", "rust"):
             raise Unreadable("one index of a matrix, which Eigen and nalgebra count by columns")

@@ -386,6 +386,8 @@ class Machine(Evaluator):
             self.write(variable, result, statement)
             return
         variable, places, _ = self.targets(target)
+        if target.kind in ("method", "call"):  # of a matrix of unknown size a part, of an object perhaps a member
+            self.parted.add(variable.name.replace("->", ".").rpartition(".")[0])
         if variable.number == "list" and isinstance(result, Array) and value.kind != "list":
             lose(variable, Unread(statement.line, "a row of a list that may stand in two places"))
             raise Unreadable("a row of a list that may stand in two places")
@@ -534,6 +536,9 @@ class Machine(Evaluator):
             for i in range(first, end, by):
                 self.frame[name] = Variable(name, "int", (), {(): Scalar(build_number(i), "int", statement.line)})
                 self.block(body)
+        if self.unit.language == "matlab" and not range(first, end, by):
+            empty = Unread(statement.line, "the counter of a loop without a round, which is empty")
+            self.frame[name] = Variable(name, all_unread=empty)
 
     def run_loop(self, first: Body, test: Part, step: Body, body: Body, is_late: bool, statement: Part) -> None:
         """``for`` of C and ``while``: the condition is known from whole numbers each time."""

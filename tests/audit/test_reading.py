@@ -230,3 +230,29 @@ def test_numbers_are_read_exactly(tmp_path):
 def test_an_assignment_with_an_operator_on_bits_is_no_quotient(tmp_path, sign):
     result = read(tmp_path, f"def f(a):\n    n = 9\n    n {sign}= 2\n    y = a * n\n    return y\n", end=".py")
     assert final(result, "y") == f"the assignment {sign}="
+
+
+@pytest.mark.parametrize(
+    ("text", "why"),
+    [
+        ("void f(Matrix3f &M, float &y) { M.topRows(1) = M.row(2); y = M(0, 0); }", "topRows"),
+        ("void f(Mat &M, float a, float &y) { M.topRows(1) = a; y = M(0, 0); }", "one of its methods"),
+        ("void f(Mat &M, float a, float &y) { M(0, 0) = a; M.topRows(1) = a; y = M(0, 0); }", "topRows"),
+    ],
+)  # fmt: skip
+def test_what_a_method_of_a_matrix_writes_is_in_the_matrix(tmp_path, text, why):
+    assert why in final(read(tmp_path, text, end=".cpp"), "y")
+    member = "void f(State &s, float a, float &y) { s.P(0, 0) = a; s.K(0, 0) = 1; y = s.P(0, 0); }"
+    assert final(read(tmp_path, member, end=".cpp"), "y") == "a"
+
+
+def test_the_counter_of_a_loop_without_a_round_is_empty_in_matlab(tmp_path):
+    text = "function y = f(a)\n  k = 9;\n  for k = {}:1\n    a = a + 1;\n  end\n  y = a + k;\nend\n"
+    assert final(read(tmp_path, text.format(1), end=".m"), "y") == "a + 1 + 1"
+    assert "without a round" in final(read(tmp_path, text.format(5), end=".m"), "y")
+
+
+def test_all_entries_of_a_row_are_a_column_in_matlab(tmp_path):
+    text = "function y = f(v)\n  w = v';\n  y = [w(:)'; w];\nend\n"
+    result = read(tmp_path, text, end=".m", shapes={"v": (2, 1)})
+    assert [final(result, "y", 1, j) for j in (0, 1)] == ["v(1,1)", "v(2,1)"]
