@@ -13,6 +13,7 @@ import time
 from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import replace
 from decimal import Decimal
+from functools import partial
 from typing import Any
 
 import sympy as sp
@@ -191,16 +192,34 @@ def grant_verdict(statement: Statement, verdict: Verdict, seconds: float = SECON
     if documents is None:
         apart = "the two sides have no common statement"
         return leave_unchecked(verdict, statement.unsaid if isinstance(statement, Property) else apart)
+    if isinstance(statement, Property) and verdict.certificate:
+        return pass_gate(documents, verdict)
     try:
-        if isinstance(statement, Property) and verdict.certificate:
-            answer = grant(documents, verdict.certificate or {})
-            holds = (answer == "HOLDS") == verdict.status.holds
-            return verdict if holds else withdraw(verdict, f"the statement {answer}")
-        if verdict.status == REFUTED:
-            return grant_refutation(documents, verdict)
-        return grant_proofs(documents, verdict, seconds)
+        found = (find_refutation if verdict.status == REFUTED else partial(prove_all, seconds=seconds))(
+            documents, verdict
+        )
     except REFUSALS as refusal:
-        return withdraw(verdict, str(refusal)) if verdict.status.holds or verdict.status == REFUTED else verdict
+        return withdraw(verdict, str(refusal)) if says_more(verdict) else verdict
+    return pass_gate(documents, found)
+
+
+def says_more(verdict: Verdict) -> bool:
+    """Whether a verdict says PROVED, CERTIFIED or REFUTED."""
+    return verdict.status.holds or verdict.status == REFUTED
+
+
+def pass_gate(documents: Sequence[Document], verdict: Verdict) -> Verdict:
+    """The verdict, if the checker accepts its certificate for these statements and says the same; else OPEN.
+
+    The one gate behind all searches: PROVED, CERTIFIED and REFUTED of a statement in the checker's words come out here.
+    """
+    if not says_more(verdict):
+        return verdict
+    try:
+        answer = grant(documents, verdict.certificate or {})
+    except REFUSALS as refusal:
+        return withdraw(verdict, str(refusal))
+    return verdict if (answer == "HOLDS") == verdict.status.holds else withdraw(verdict, f"the statement {answer}")
 
 
 def leave_unchecked(verdict: Verdict, why: str = "") -> Verdict:
@@ -222,7 +241,7 @@ def grant(documents: Sequence[Document], certificate: Mapping[str, Any]) -> str:
     return checker.grant(list(documents), checker.load(json.dumps(certificate)))
 
 
-def grant_refutation(documents: Sequence[Document], verdict: Verdict) -> Verdict:
+def find_refutation(documents: Sequence[Document], verdict: Verdict) -> Verdict:
     """REFUTED by a point that the checker accepts for one of the entries."""
     point, why = dict(verdict.counterexample or {}), "no entry fails there"
     for document in documents:
@@ -334,7 +353,7 @@ def answer_at_point(document: Document, point: Mapping[str, str]) -> Document:
     return {"answers": answers} if answers else {}
 
 
-def grant_proofs(documents: Sequence[Document], verdict: Verdict, seconds: float) -> Verdict:
+def prove_all(documents: Sequence[Document], verdict: Verdict, seconds: float) -> Verdict:
     """PROVED or CERTIFIED with proofs of all entries; REFUTED where a sample breaks one of them."""
     certificates, end = [], time.process_time() + seconds
     for document in documents:
@@ -342,8 +361,7 @@ def grant_proofs(documents: Sequence[Document], verdict: Verdict, seconds: float
         if certificate is None:
             return judge_without_proof(documents, document, verdict)
         certificates.append(certificate)
-    whole = certificates[0] if len(certificates) == 1 else {"kind": "all", "of": certificates}
-    grant(documents, whole)
+    whole = join_certificates(certificates)
     if verdict.status.holds:
         return replace(verdict, certificate=whole)
     rules = sorted({rule for certificate in certificates for rule in rules_of(certificate["proofs"])})
@@ -351,6 +369,11 @@ def grant_proofs(documents: Sequence[Document], verdict: Verdict, seconds: float
     status = CERTIFIED if "balls" in rules or is_numeral else PROVED
     words = f"a proof by the rules {', '.join(rules)}"
     return replace(verdict, status=status, method="proof tree", evidence=words, certificate=whole)
+
+
+def join_certificates(certificates: Sequence[Document]) -> Document:
+    """One certificate of all entries or links."""
+    return certificates[0] if len(certificates) == 1 else {"kind": "all", "of": [*certificates]}
 
 
 def prove_document(document: Document, verdict: Verdict, seconds: float) -> Document | None:

@@ -4,13 +4,12 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import replace
 from typing import Any
 
 from flint import arb
 
 from navsym.claims.verdict import OPEN, PROVED, REFUTED, Verdict
-from navsym.prove.grant import REFUSALS, Document, grant, withdraw
+from navsym.prove.grant import REFUSALS, Document, join_certificates
 from navsym.prove.rooms.goals import player, to_sympy
 from navsym.prove.search import EASY, find_proof
 from navsym.prove.wording import decimal_ends, expression_text
@@ -20,8 +19,8 @@ from navsym.prove.words.shares import find_above, find_shares
 FEW = 8  # points that are enough evidence before a proof is sought
 
 
-def decide_words(documents: Sequence[Document], scope: str, seconds: float) -> Verdict:
-    """The verdict of all links of a claim."""
+def search_words(documents: Sequence[Document], scope: str, seconds: float) -> Verdict:
+    """Shares of the relations for all links of a claim, or a point of one size; the checker has not seen them."""
     end, certificates, assumed, count = time.process_time() + seconds, list[Document](), dict[str, None](), 0
     for document in documents:
         try:
@@ -32,7 +31,7 @@ def decide_words(documents: Sequence[Document], scope: str, seconds: float) -> V
         points = []
         for point, holds in draw_sized_points(document):
             if not holds:
-                return refute(documents, document, point)
+                return refute(document, point)
             points.append(point)
             if len(points) == FEW:
                 break
@@ -48,15 +47,10 @@ def decide_words(documents: Sequence[Document], scope: str, seconds: float) -> V
         certificates[-1] |= {} if above is None else {"above": above}
         assumed |= dict.fromkeys((*algebra.assumed, *list_conditions(algebra)))
         count += len(shares) + len(above or [])
-    whole = certificates[0] if len(certificates) == 1 else {"kind": "all", "of": certificates}
+    whole = join_certificates(certificates)
     what = "multiples of relations between the letters" if above is None else "traces of nonnegative matrices"
     evidence = f"the difference is a sum of {count} {what}"
-    verdict = Verdict(PROVED, "sums of words", scope, tuple(assumed), evidence, certificate=whole)
-    try:
-        grant(documents, whole)
-    except REFUSALS as refusal:
-        return withdraw(replace(verdict, certificate=None), str(refusal))
-    return verdict
+    return Verdict(PROVED, "sums of words", scope, tuple(assumed), evidence, certificate=whole)
 
 
 def list_conditions(algebra: Any) -> Iterator[str]:
@@ -68,16 +62,12 @@ def list_conditions(algebra: Any) -> Iterator[str]:
             yield f"{expression_text(to_sympy(term))} {relation} 0"
 
 
-def refute(documents: Sequence[Document], document: Document, point: Mapping[str, Any]) -> Verdict:
-    """REFUTED at a point, when the checker grants it."""
+def refute(document: Document, point: Mapping[str, Any]) -> Verdict:
+    """REFUTED at a point."""
     certificate: Document = {"kind": "sized", "statement": document, "point": point}
-    verdict = Verdict(REFUTED, "exact matrices", "matrices of one size", (), "", show_point(dict(point)))
-    try:
-        grant(documents, certificate)
-    except REFUSALS as refusal:
-        return withdraw(verdict, str(refusal))
-    words = "the text fails at exact matrices with all declared properties"
-    return replace(verdict, evidence=words, certificate=certificate, difference=difference_at(document, point))
+    words, difference = "the text fails at exact matrices with all declared properties", difference_at(document, point)
+    method, scope = "exact matrices", "matrices of one size"
+    return Verdict(REFUTED, method, scope, (), words, show_point(dict(point)), difference, certificate)
 
 
 def difference_at(document: Document, point: Mapping[str, Any]) -> Any:
