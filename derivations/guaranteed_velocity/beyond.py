@@ -9,7 +9,7 @@ from typing import Any
 
 import sympy as sp
 
-from navsym.claims import REFUTED, Bound, Claim, Equation, Optimum, claim, claims
+from navsym.claims import Bound, Claim, Equation, Optimum, claim, claims
 from navsym.models.linear import LinearModel
 from navsym.models.transition.exponential import regressors
 from navsym_papers.guaranteed_velocity.model import INSTANTS, H, T, alternating, optimum, tau, weights
@@ -29,55 +29,48 @@ DUALS = {
 # -- how far the printed formulas hold ---------------------------------------
 
 
-def regime(number: str, title: str, lower: Any, upper: Any, state: int, *solution: Any, **more: Any) -> Claim:
+def regime(heading: str, lower: Any, upper: Any, state: int, *solution: Any) -> Claim:
     """That a dual, its times, weights and value are optimal between two T: those of three instants if none is given."""
 
     def derive() -> Optimum:
         alternance = tuple(alternating()), INSTANTS, weights(state), ALTERNATING.get(state)
         return optimum(state, *(solution or alternance), {T: (sp.sympify(lower), upper)})
 
-    return claim(number, title, derive, **more)
+    return claim(heading, derive=derive)
 
 
-SHARP = {"expect": REFUTED, "reason": "a test of sharpness: at the end of this range a weight has the wrong sign"}
+SHARP = "REFUTED: a test of sharpness: at the end of this range a weight has the wrong sign"
 REGIMES = (
     regime(
-        "range.y1",
-        "y1: the last measurement alone is optimal for every T.",
+        "range.y1 | y1: the last measurement alone is optimal for every T.",
         *(0, None, Y1, (1, 0, 0), (T,), (ONE,), ONE),
     ),
     regime(
-        "range.y2",
-        "y2: the printed weights and error 2 cot(T/4) are optimal up to T = 4 pi/3, not only to pi/2.",
+        "range.y2 | y2: the printed weights and error 2 cot(T/4) are optimal up to T = 4 pi/3, not only to pi/2.",
         *(0, 4 * sp.pi / 3, Y2),
     ),
     regime(
-        "range.y3",
-        "y3: the printed weights and error cos(T/2)/sin^2(T/4) are optimal up to T = 2 pi/3.",
+        "range.y3 | y3: the printed weights and error cos(T/2)/sin^2(T/4) are optimal up to T = 2 pi/3.",
         *(0, 2 * sp.pi / 3, Y3),
     ),
-    regime("range.y2.end", "y2: the printed solution is optimal up to T = 3 pi/2.", 0, 3 * sp.pi / 2, Y2, **SHARP),
+    regime(f"range.y2.end | y2: the printed solution is optimal up to T = 3 pi/2. | {SHARP}", 0, 3 * sp.pi / 2, Y2),
     regime(
-        "range.y2.end*",
-        "y2, 4 pi/3 <= T <= 3 pi/2: two instants, 2(T - pi) and 0, and the error -1/sin T.",
+        "range.y2.end* | y2, 4 pi/3 <= T <= 3 pi/2: two instants, 2(T - pi) and 0, and the error -1/sin T.",
         *(4 * sp.pi / 3, 3 * sp.pi / 2, Y2, DUALS[Y2]),
         *((2 * T - 2 * sp.pi, sp.Integer(0)), (-1 / (2 * SIN), 1 / (2 * SIN)), -1 / SIN),
     ),
     regime(
-        "range.y2.last",
-        "y2, every T >= 3 pi/2: half the difference of two measurements half a period apart, error 1.",
+        "range.y2.last | y2, every T >= 3 pi/2: half the difference of two measurements half a period apart, error 1.",
         *(3 * sp.pi / 2, None, Y2, (0, 1, 0), (T - sp.pi / 2, T - 3 * sp.pi / 2), HALF, ONE),
     ),
-    regime("range.y3.end", "y3: the printed solution is optimal up to T = 3 pi/4.", 0, 3 * sp.pi / 4, Y3, **SHARP),
+    regime(f"range.y3.end | y3: the printed solution is optimal up to T = 3 pi/4. | {SHARP}", 0, 3 * sp.pi / 4, Y3),
     regime(
-        "range.y3.end*",
-        "y3, 2 pi/3 <= T <= pi: two instants, 2 T - pi and 0, and the error -1/cos T.",
+        "range.y3.end* | y3, 2 pi/3 <= T <= pi: two instants, 2 T - pi and 0, and the error -1/cos T.",
         *(2 * sp.pi / 3, sp.pi, Y3, DUALS[Y3]),
         *((2 * T - sp.pi, sp.Integer(0)), (-1 / (2 * COS), 1 / (2 * COS)), -1 / COS),
     ),
     regime(
-        "range.y3.last",
-        "y3, every T >= pi: half the difference of two measurements half a period apart, error 1.",
+        "range.y3.last | y3, every T >= pi: half the difference of two measurements half a period apart, error 1.",
         *(sp.pi, None, Y3, (1, 0, 1), (T, T - sp.pi), HALF, ONE),
     ),
 )
@@ -140,8 +133,7 @@ CLAIMS_UNIQUE = claims(
 
 
 other_dual_of_velocity = regime(
-    "range.y1.other_dual",
-    "y1, every T: the dual (1, 0, 1/2) is feasible and has the value 1.",
+    "range.y1.other_dual | y1, every T: the dual (1, 0, 1/2) is feasible and has the value 1.",
     *(0, None, Y1, (1, 0, sp.Rational(1, 2)), (T,), (ONE,), ONE),
 )
 
@@ -183,8 +175,7 @@ CLAIMS_RANGE_2 = claims(
 #: H repeats after 2 pi, so that one time of the last regime may move back by a period as soon as it lies in [0, T].
 TWINS: tuple[Claim, ...] = tuple(
     regime(
-        f"range.y{state + 1}.twin",
-        f"y{state + 1}, T >= {start}: other times give the same error: no longer unique.",
+        f"range.y{state + 1}.twin | y{state + 1}, T >= {start}: other times give the same error: no longer unique.",
         *(start, None, state, dual, times, weights_, ONE),
     )
     for state, dual, times, weights_, start in (

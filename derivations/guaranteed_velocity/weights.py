@@ -45,9 +45,8 @@ CLAIMS_4_10 = claims(
 
 WEIGHTS = tuple(
     claim(
-        f"4.12.Phi{s + 1}{j + 1}",
-        f"Weight Phi_{s + 1}{j + 1} of the estimate of y{s + 1}.",
-        lambda s=s, j=j: Equation(PRINTED_WEIGHTS[s][j], weights(s)[j], STATED),
+        f"4.12.Phi{s + 1}{j + 1} | Weight Phi_{s + 1}{j + 1} of the estimate of y{s + 1}.",
+        derive=lambda s=s, j=j: Equation(PRINTED_WEIGHTS[s][j], weights(s)[j], STATED),
     )
     for s in range(3)
     for j in range(3)
@@ -77,9 +76,8 @@ def errors_with_sigma(sigma: sp.Symbol) -> Equation:
 #: The printed error (for sigma = 1) is the optimum of (2.7), proved by weights and dual.
 OPTIMAL_ERRORS = tuple(
     claim(
-        f"4.13.y{s + 1}",
-        f"Guaranteed error of y{s + 1}: optimal among all linear unbiased estimates.",
-        lambda s=s: optimum(s, dual_of(s), INSTANTS, weights(s), PRINTED_ERRORS[s]),
+        f"4.13.y{s + 1} | Guaranteed error of y{s + 1}: optimal among all linear unbiased estimates.",
+        derive=lambda s=s: optimum(s, dual_of(s), INSTANTS, weights(s), PRINTED_ERRORS[s]),
     )
     for s in range(3)
 )
@@ -114,26 +112,16 @@ TRUE_FIRST = 1 / (2 * sp.sin(T / 2))
 PRINTED_DRIFT = (-z0 + 2 * sp.cos(T / 2) * zm + (1 - 2 * sp.cos(T / 2)) * zT) / (4 * SINE)
 
 
-def estimates(equation: str, velocity: int, tilt: int) -> tuple[Claim, Claim, Claim]:
+def estimates(equation: str, velocity: int, tilt: int) -> tuple[Claim, ...]:
     """The estimates of velocity and tilt of one channel, the second as printed and as it should read."""
-    return (
-        claim(
-            f"{equation}.y{velocity}",
-            f"The estimate of y{velocity} is the last measurement.",
-            lambda: Equation(zT, derived_estimate(0), STATED),
-        ),
-        claim(
-            f"{equation}.y{tilt}",
-            f"The estimate of y{tilt}, as printed.",
-            lambda: Equation(estimate_of_tilt(PRINTED_FIRST), derived_estimate(1), STATED),
-            slip="paper",
-            reason="sin^2(T/2) stands for sin(T/2): Phi_21 of (4.12) is right, and the estimate as printed is biased",
-        ),
-        claim(
-            f"{equation}.y{tilt}*",
-            f"The estimate of y{tilt} with the first coefficient -1/(2 sin(T/2)).",
-            lambda: Equation(estimate_of_tilt(TRUE_FIRST), derived_estimate(1), STATED),
-        ),
+    return claims(
+        f"{equation}.y{velocity} | The estimate of y{velocity} is the last measurement.",
+        lambda: Equation(zT, derived_estimate(0), STATED),
+        f"{equation}.y{tilt} | The estimate of y{tilt}, as printed. | paper: sin^2(T/2) stands for sin(T/2): Phi_21 of "
+        "(4.12) is right, and the estimate as printed is biased",
+        lambda: Equation(estimate_of_tilt(PRINTED_FIRST), derived_estimate(1), STATED),
+        f"{equation}.y{tilt}* | The estimate of y{tilt} with the first coefficient -1/(2 sin(T/2)).",
+        lambda: Equation(estimate_of_tilt(TRUE_FIRST), derived_estimate(1), STATED),
     )
 
 

@@ -6,8 +6,9 @@ order mu^2 rho is dropped term by term (``navsym_papers.joint_correction.inertia
 """
 
 from collections.abc import Callable
-from functools import cache
+from functools import cache, partial
 from itertools import pairwise
+from typing import Any
 
 import sympy as sp
 
@@ -50,16 +51,18 @@ def up_to_order(side: sp.Expr) -> sp.Expr:
     return found.kept if found.dropped else side
 
 
-def row(
-    number: str,
-    title: str,
-    printed: sp.Expr,
-    derived: Callable[[], sp.Expr],
-    kept: Callable[[sp.Expr], sp.Expr] = up_to_order,
-    **more: object,
-) -> Claim:
-    """A claim for one printed row: what is kept of both sides, all but terms of the order mu^2 rho, is compared."""
-    return claim(number, title, lambda: Equation(kept(printed), kept(derived())), **more)
+def same(
+    printed: sp.Expr, derived: Callable[[], sp.Expr], kept: Callable[[sp.Expr], sp.Expr] = up_to_order
+) -> Callable[[], Equation]:
+    """What is kept of a printed row and of the derived one, all but terms of the order mu^2 rho, is compared."""
+    return lambda: Equation(kept(printed), kept(derived()))
+
+
+def rows(
+    heading: str, printed: dict[int, sp.Expr], derived: Callable[[int], sp.Expr], **more: Any
+) -> tuple[Claim, ...]:
+    """A claim for each printed row; the heading has its number for {0}."""
+    return tuple(claim(heading.format(k), derive=same(row, partial(derived, k), **more)) for k, row in printed.items())
 
 
 # (2.6) and (2.7): what the variables are
@@ -83,23 +86,15 @@ POSITION_MEANING = (
     pi2 + v2,
 )
 
-meanings_x = tuple(
-    row(
-        f"2.6.x{k + 1}",
-        f"x_{k + 1} as a combination of errors, from the spectral parts of sigma^c.",
-        printed,
-        lambda k=k: velocity().meaning[k],
-    )
-    for k, printed in enumerate(VELOCITY_MEANING)
-)
-meanings_y = tuple(
-    row(
-        f"2.7.y{k + 1}",
-        f"y_{k + 1} as a combination of errors, from sigma^M and its derivatives.",
-        printed,
-        lambda k=k: position().meaning[k],
-    )
-    for k, printed in enumerate(POSITION_MEANING)
+MEANINGS = (
+    *rows(
+        "2.6.x{0} | x_{0} as a combination of errors, from the spectral parts of sigma^c.",
+        *(dict(enumerate(VELOCITY_MEANING, 1)), lambda k: velocity().meaning[k - 1]),
+    ),
+    *rows(
+        "2.7.y{0} | y_{0} as a combination of errors, from sigma^M and its derivatives.",
+        *(dict(enumerate(POSITION_MEANING, 1)), lambda k: position().meaning[k - 1]),
+    ),
 )
 
 # (2.8): the velocity group
@@ -107,90 +102,63 @@ meanings_y = tuple(
 earth_drift = u1 * b2 - u2 * b1
 VELOCITY_ROWS = (x2, -x1 - mu * w2 * v3, -(mu**2) * w2 * earth_drift + mu * (u2 * v3 - u3 * v2), x5, -x4 + mu * w1 * v3)
 
-rows_x = tuple(
-    row(
-        f"2.8.x{k + 1}",
-        f"Derivative of x_{k + 1} up to terms of order mu^2 rho.",
-        printed,
-        lambda k=k: velocity().rates[k],
-    )
-    for k, printed in enumerate(VELOCITY_ROWS)
+RATES_X = rows(
+    "2.8.x{0} | Derivative of x_{0} up to terms of order mu^2 rho.",
+    *(dict(enumerate(VELOCITY_ROWS, 1)), lambda k: velocity().rates[k - 1]),
 )
-row_x6_printed = row(
-    "2.8.x6",
-    "Derivative of x_6, as printed.",
-    mu**2 * w1 * earth_drift + mu * (u1 * v3 - u3 * v1),
-    lambda: velocity().rates[5],
-    slip="undecidable",
-    reason="sign of the last bracket: x_6 contains -u_1 beta_3 and u_3 beta_1, whose drifts give -u_1 nu_3 + u_3 "
-    "nu_1; the row of x_3 turned by 90 degrees gives the same; by hand: u_1 = nu_3 = 1, all others 0: beta_3 grows "
-    "at 1 and x_6 = -mu beta_3 at -mu, the print has mu",
-)
-row_x6 = row(
-    "2.8.x6*",
-    "Derivative of x_6 up to terms of order mu^2 rho.",
-    mu**2 * w1 * earth_drift - mu * (u1 * v3 - u3 * v1),
-    lambda: velocity().rates[5],
-)
-output_c1 = row(
-    "2.8.sigma1",
-    "sigma_1^c in the variables of the group, without noise.",
-    x2 + x3 + mu * u3 * x4,
-    lambda: velocity().outputs[0],
-)
-output_c2 = row(
-    "2.8.sigma2",
-    "sigma_2^c in the variables of the group, without noise.",
-    x5 + x6 - mu * u3 * x1,
-    lambda: velocity().outputs[1],
+CLAIMS_2_8 = claims(
+    "2.8.x6 | Derivative of x_6, as printed. | undecidable: sign of the last bracket: x_6 contains -u_1 beta_3 and "
+    "u_3 beta_1, whose drifts give -u_1 nu_3 + u_3 nu_1; the row of x_3 turned by 90 degrees gives the same; by "
+    "hand: u_1 = nu_3 = 1, all others 0: beta_3 grows at 1 and x_6 = -mu beta_3 at -mu, the print has mu",
+    same(mu**2 * w1 * earth_drift + mu * (u1 * v3 - u3 * v1), lambda: velocity().rates[5]),
+    "2.8.x6* | Derivative of x_6 up to terms of order mu^2 rho.",
+    same(mu**2 * w1 * earth_drift - mu * (u1 * v3 - u3 * v1), lambda: velocity().rates[5]),
+    "2.8.sigma1 | sigma_1^c in the variables of the group, without noise.",
+    same(x2 + x3 + mu * u3 * x4, lambda: velocity().outputs[0]),
+    "2.8.sigma2 | sigma_2^c in the variables of the group, without noise.",
+    same(x5 + x6 - mu * u3 * x1, lambda: velocity().outputs[1]),
 )
 
 # (2.9): the position group
 
-POSITION_ROWS = {3: y4, 4: -y3 - mu * w2 * v3, 7: y8, 8: -y7 + mu * w1 * v3}
 #: y_2 and y_6 are the derivatives of y_1 and y_5: (2.7) says what they are, the kinematics what they have to be.
-derivatives_y = tuple(
-    row(
-        f"2.9.y{k}",
-        f"Derivative of y_{k}: y_{k + 1} as (2.7) prints it is the rate of alpha_{axis} - beta_{axis}.",
-        POSITION_MEANING[k],
-        lambda angle=angle, turn=turn: sp.expand(
-            inertial.dimensionless().rates[angle] - inertial.dimensionless().rates[turn]
-        ),
-    )
-    for k, axis, angle, turn in ((1, 1, a1, b1), (5, 2, a2, b2))
-)
-rows_y = tuple(
-    row(
-        f"2.9.y{k}", f"Derivative of y_{k} up to terms of order mu^2 rho.", printed, lambda k=k: position().rates[k - 1]
-    )
-    for k, printed in POSITION_ROWS.items()
-)
+POSITION_ROWS = {3: y4, 4: -y3 - mu * w2 * v3, 7: y8, 8: -y7 + mu * w1 * v3}
 DOT = (
     "the dot over omega is lost: beta_3 enters through the derivative of omega only (mu omega nu_3 cancels); as "
     "printed the term has the order rho, against the paper's own remark that the inhomogeneous terms have the order "
     "mu; by hand: constant omega, beta_3 = 1, all others 0: y_2 and y_6 stand still, the print has mu omega_2 and "
     "-mu omega_1"
 )
-rows_y_with_a_dot = tuple(
-    row(
-        f"2.9.y{k}{star}",
-        f"Derivative of y_{k}, as printed." if more else f"Derivative of y_{k} up to terms of order mu^2 rho.",
-        -y + mu**2 * slow + mu * once * b3,
-        lambda k=k: position().rates[k - 1],
-        **more,
-    )
-    for k, y, slow, turn, rate in (
-        (2, y3, (w1 * y5 - w2 * y1) * w2, w2, dw2),
-        (6, y7, (w2 * y1 - w1 * y5) * w1, -w1, -dw1),
-    )
-    for star, once, more in (("", turn, {"slip": "scan", "reason": DOT}), ("*", rate, {}))
+
+
+def turn_rate(angle: sp.Symbol, turn: sp.Symbol) -> sp.Expr:
+    """Of the difference of two angles, from the kinematics."""
+    return sp.expand(inertial.dimensionless().rates[angle] - inertial.dimensionless().rates[turn])
+
+
+DERIVATIVES_Y = claims(
+    "2.9.y1 | Derivative of y_1: y_2 as (2.7) prints it is the rate of alpha_1 - beta_1.",
+    same(POSITION_MEANING[1], lambda: turn_rate(a1, b1)),
+    "2.9.y5 | Derivative of y_5: y_6 as (2.7) prints it is the rate of alpha_2 - beta_2.",
+    same(POSITION_MEANING[5], lambda: turn_rate(a2, b2)),
 )
-output_m1 = row(
-    "2.9.sigma1", "sigma_1^M in the variables of the group, without noise.", y1, lambda: position().outputs[0]
+RATES_Y = rows(
+    "2.9.y{0} | Derivative of y_{0} up to terms of order mu^2 rho.", POSITION_ROWS, lambda k: position().rates[k - 1]
 )
-output_m2 = row(
-    "2.9.sigma2", "sigma_2^M in the variables of the group, without noise.", y5, lambda: position().outputs[1]
+SLOW_2, SLOW_6 = (w1 * y5 - w2 * y1) * w2, (w2 * y1 - w1 * y5) * w1
+CLAIMS_2_9 = claims(
+    f"2.9.y2 | Derivative of y_2, as printed. | scan: {DOT}",
+    same(-y3 + mu**2 * SLOW_2 + mu * w2 * b3, lambda: position().rates[1]),
+    "2.9.y2* | Derivative of y_2 up to terms of order mu^2 rho.",
+    same(-y3 + mu**2 * SLOW_2 + mu * dw2 * b3, lambda: position().rates[1]),
+    f"2.9.y6 | Derivative of y_6, as printed. | scan: {DOT}",
+    same(-y7 + mu**2 * SLOW_6 - mu * w1 * b3, lambda: position().rates[5]),
+    "2.9.y6* | Derivative of y_6 up to terms of order mu^2 rho.",
+    same(-y7 + mu**2 * SLOW_6 - mu * dw1 * b3, lambda: position().rates[5]),
+    "2.9.sigma1 | sigma_1^M in the variables of the group, without noise.",
+    same(y1, lambda: position().outputs[0]),
+    "2.9.sigma2 | sigma_2^M in the variables of the group, without noise.",
+    same(y5, lambda: position().outputs[1]),
 )
 
 
@@ -230,12 +198,10 @@ def order_one(term: sp.Expr) -> Property:
     return fact(1, lowest_order(term, ORDERS), "bookkeeping of every monomial", PROVED, meaning=[say_order_one(term)])
 
 
-inhomogeneous_term_as_printed = claim(
-    "2.9.inhomogeneous_printed",
-    "The printed inhomogeneous term mu omega_2 beta_3 of y_2 has the order mu (times rho).",
+INHOMOGENEOUS = claims(
+    "2.9.inhomogeneous_printed | The printed inhomogeneous term mu omega_2 beta_3 of y_2 has the order mu (times rho). "
+    f"| scan: {DOT}",
     lambda: order_one(mu * w2 * b3),
-    slip="scan",
-    reason=DOT,
 )
 
 

@@ -1,16 +1,15 @@
 """Section 3, (3.1)-(3.3): common variables, the algorithm of joint correction, and its situations."""
 
-from functools import cache, partial
+from functools import cache
 
 import sympy as sp
 
-from navsym.claims import PROVED, Equation, Finding, claim
+from navsym.claims import PROVED, Equation, Finding, claim, claims
 from navsym.models.linear import LinearModel
 from navsym.observability.chains import observe_jointly
 from navsym_papers.joint_correction.inertial import FULL, joint_model
 from navsym_papers.joint_correction.section1_systems import p, polynomial_of, say_ranks, seen_at_once
-from navsym_papers.joint_correction.section2_groups import mu, position, u3, velocity, w1, w2
-from navsym_papers.joint_correction.section2_groups import row as row_up_to_order
+from navsym_papers.joint_correction.section2_groups import mu, position, rows, u3, velocity, w1, w2
 
 
 @cache
@@ -28,17 +27,16 @@ true_y2 = sp.Symbol("y2_true", real=True)
 
 # (3.1)
 
-#: The rows of the algorithm are compared with all of their terms.
-row = partial(row_up_to_order, kept=lambda side: side)
 
-common = tuple(
-    row(
-        f"3.1.x{i}y{j}",
-        f"x_{i} = y_{j}: one variable of both groups.",
-        velocity().meaning[i - 1],
-        lambda j=j: position().meaning[j - 1],
-    )
-    for i, j in ((1, 3), (2, 4), (4, 7), (5, 8))
+COMMON = claims(
+    "3.1.x1y3 | x_1 = y_3: one variable of both groups.",
+    lambda: Equation(velocity().meaning[0], position().meaning[2]),
+    "3.1.x2y4 | x_2 = y_4: one variable of both groups.",
+    lambda: Equation(velocity().meaning[1], position().meaning[3]),
+    "3.1.x4y7 | x_4 = y_7: one variable of both groups.",
+    lambda: Equation(velocity().meaning[3], position().meaning[6]),
+    "3.1.x5y8 | x_5 = y_8: one variable of both groups.",
+    lambda: Equation(velocity().meaning[4], position().meaning[7]),
 )
 
 
@@ -102,14 +100,10 @@ def observer_row(k: int) -> sp.Expr:
     return (F * x)[k] + Kc[k] * measured
 
 
-rows_32 = tuple(
-    row(
-        f"3.2.x{k + 1}",
-        f"Estimate of x_{k + 1}: the homogeneous equation (2.8) and the innovation of its channel.",
-        printed,
-        lambda k=k: observer_row(k),
-    )
-    for k, printed in enumerate(PRINTED_32)
+OBSERVER = rows(
+    "3.2.x{0} | Estimate of x_{0}: the homogeneous equation (2.8) and the innovation of its channel.",
+    *(dict(enumerate(PRINTED_32, 1)), lambda k: observer_row(k - 1)),
+    kept=lambda side: side,  # with all of its terms
 )
 
 # (3.3)
@@ -123,23 +117,15 @@ def position_row(k: int) -> sp.Expr:
     return (F * estimates)[k - 1] + Kh[k] * ((sm1, sm2)[channel] - (H * estimates)[channel])
 
 
-y1_printed = row(
-    "3.3.y1",
-    "Estimate of y_1, as printed: with y_2 itself on the right.",
-    true_y2 + Kh[1] * (sm1 - y[1]),
-    lambda: position_row(1),
-    slip="scan",
-    reason="the circle that marks an estimate is lost: y_2 is not known; the row of y_5 beside it has y_6 with the "
-    "circle; by hand: y_2 = 1, all estimates 0 and K = 0: the estimator has no way to the rate 1 of the print",
-)
-y1_row = row(
-    "3.3.y1*", "Estimate of y_1: y_2° and the innovation.", y[2] + Kh[1] * (sm1 - y[1]), lambda: position_row(1)
-)
-y2_row = row(
-    "3.3.y2",
-    "Estimate of y_2: slow rotation, Schuler estimate x_1°, and the innovation.",
-    mu**2 * w2 * (w1 * y[5] - w2 * y[1]) + Kh[2] * (sm1 - y[1]) - x[0],
-    lambda: position_row(2),
+POSITION_STAGE = claims(
+    "3.3.y1 | Estimate of y_1, as printed: with y_2 itself on the right. | scan: the circle that marks an estimate is "
+    "lost: y_2 is not known; the row of y_5 beside it has y_6 with the circle; by hand: y_2 = 1, all estimates 0 and "
+    "K = 0: the estimator has no way to the rate 1 of the print",
+    lambda: Equation(true_y2 + Kh[1] * (sm1 - y[1]), position_row(1)),
+    "3.3.y1* | Estimate of y_1: y_2° and the innovation.",
+    lambda: Equation(y[2] + Kh[1] * (sm1 - y[1]), position_row(1)),
+    "3.3.y2 | Estimate of y_2: slow rotation, Schuler estimate x_1°, and the innovation.",
+    lambda: Equation(mu**2 * w2 * (w1 * y[5] - w2 * y[1]) + Kh[2] * (sm1 - y[1]) - x[0], position_row(2)),
 )
 DOT = (
     "the dot of the derivative is lost on the left side: as printed the row is no differential equation, although "
@@ -157,28 +143,15 @@ RIGHT_5 = y[6] + Kh[5] * (sm2 - y[5])
 RIGHT_6 = mu**2 * w1 * (w2 * y[1] - w1 * y[5]) + Kh[6] * (sm2 - y[5]) - x[3]
 
 
-y5_printed = claim(
-    "3.3.y5",
-    "Estimate of y_5, as printed: an equation for y_5° without a derivative.",
+SECOND_CHANNEL = claims(
+    f"3.3.y5 | Estimate of y_5, as printed: an equation for y_5° without a derivative. | scan: {DOT}",
     lambda: assignment(5, RIGHT_5),
-    slip="scan",
-    reason=DOT,
-)
-y6_printed = claim(
-    "3.3.y6",
-    "Estimate of y_6, as printed: an equation for y_6° without a derivative.",
+    f"3.3.y6 | Estimate of y_6, as printed: an equation for y_6° without a derivative. | scan: {DOT}",
     lambda: assignment(6, RIGHT_6),
-    slip="scan",
-    reason=DOT,
-)
-
-
-y5_row = row("3.3.y5*", "Derivative of y_5°: y_6° and the innovation.", RIGHT_5, lambda: position_row(5))
-y6_row = row(
-    "3.3.y6*",
-    "Derivative of y_6°: slow rotation, Schuler estimate x_4°, and the innovation.",
-    RIGHT_6,
-    lambda: position_row(6),
+    "3.3.y5* | Derivative of y_5°: y_6° and the innovation.",
+    lambda: Equation(RIGHT_5, position_row(5)),
+    "3.3.y6* | Derivative of y_6°: slow rotation, Schuler estimate x_4°, and the innovation.",
+    lambda: Equation(RIGHT_6, position_row(6)),
 )
 
 

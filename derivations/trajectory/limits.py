@@ -15,7 +15,7 @@ from dataclasses import dataclass
 
 import sympy as sp
 
-from navsym.claims import CERTIFIED, Bound, Equation, claim
+from navsym.claims import Bound, Equation, claim, claims
 
 sigma, M, T, s, u = sp.symbols("sigma M T s u", positive=True)
 y = sp.Symbol("y", real=True)
@@ -169,67 +169,53 @@ def attained(question: Question) -> Equation:
 
 
 RULES = tuple(
-    claim(f"limit.{q.name}.{part}", title, derive)
+    claim(f"limit.{q.name}.{heading}", derive=derive)
     for q in QUESTIONS
-    for part, title, derive in (
+    for heading, derive in (
         (
-            "remainder",
-            f"The rule for the {q.words} is off by the integral of K x^({q.order}).",
+            f"remainder | The rule for the {q.words} is off by the integral of K x^({q.order}).",
             lambda q=q: remainder(q),
         ),
         *(
             (
-                f"kernel.{i + 1}",
-                f"The kernel of the rule for the {q.words} is not negative on its piece {i + 1} (T = 1).",
-                lambda q=q, i=i: positive_kernel(q, i),
+                f"kernel.{i} | The kernel of the rule for the {q.words} is not negative on its piece {i} (T = 1).",
+                lambda q=q, i=i: positive_kernel(q, i - 1),
             )
-            for i in range(q.order - 1)
+            for i in range(1, q.order)
         ),
-        ("upper", f"The rule guarantees the {q.words} to {sp.sstr(q.best)}.", lambda q=q: guaranteed(q)),
+        (f"upper | The rule guarantees the {q.words} to {sp.sstr(q.best)}.", lambda q=q: guaranteed(q)),
         (
-            "lower",
-            f"No algorithm guarantees the {q.words} better: a motion that may be measured as rest has it.",
+            f"lower | No algorithm guarantees the {q.words} better: a motion that may be measured as rest has it.",
             lambda q=q: attained(q),
         ),
     )
 )
-MOTIONS = tuple(
-    claim(f"limit.motion.{m}.{part}", title, derive)
-    for m in (2, 3)
-    for part, title, derive in (
-        (
-            "joins",
-            f"The pieces of the invisible motion of order {m} meet with {m - 1} continuous derivatives.",
+MOTIONS = (
+    *(
+        one
+        for m in (2, 3)
+        for one in claims(
+            f"limit.motion.{m}.joins | The pieces of the invisible motion of order {m} meet with {m - 1} continuous "
+            "derivatives.",
             lambda m=m: joins(m),
-        ),
-        (
-            "steep",
-            f"The derivative of order {m} of the invisible motion has the absolute value M, or rests.",
+            f"limit.motion.{m}.steep | The derivative of order {m} of the invisible motion has the absolute value M, "
+            "or rests.",
             lambda m=m: steepness(m),
-        ),
-        *(
-            (
-                part,
-                f"The {part} piece of the invisible motion of order {m} never leaves the noise.",
-                lambda piece=piece, x=x, low=low: inside(piece, x, low),
-            )
-            for part, piece, x, low in (
-                ("youngest", sp.chebyshevt(m, y), y, -1),
-                *([("older", OLDER[m], u, 0)] if m == 3 else []),
-            )
-        ),
-    )
-)
-
-
-# The heading is made continuous; its greatest acceleration, some seconds later, is 0.1081 m/s^2.
-yawing_of_the_experiment = claim(
-    "limit.yawing",
-    "Noise within sqrt(3) m, |dV_2/dt| <= 0.1077 m/s^2, as yawing begins at 100 m/s: V_2 no better than 0.86 m/s.",
-    lambda: Equation(
-        sp.Rational("0.86"),
-        QUESTIONS[0].best.subs({sigma: sp.sqrt(3), M: (100 * sp.sin(sp.pi / 4) * (5 * sp.pi / 180 * 2 * sp.pi / 360))}),
-        tolerance=sp.Rational("0.005"),
+            f"limit.motion.{m}.youngest | The youngest piece of the invisible motion of order {m} never leaves the "
+            "noise.",
+            lambda m=m: inside(sp.chebyshevt(m, y), y, -1),
+        )
     ),
-    expect=CERTIFIED,
+    *claims(
+        "limit.motion.3.older | The older piece of the invisible motion of order 3 never leaves the noise.",
+        lambda: inside(OLDER[3], u, 0),
+        # The heading is made continuous; its greatest acceleration, some seconds later, is 0.1081 m/s^2.
+        "limit.yawing | Noise within sqrt(3) m, |dV_2/dt| <= 0.1077 m/s^2, as yawing begins at 100 m/s: V_2 no better "
+        "than 0.86 m/s. | CERTIFIED",
+        lambda: Equation(
+            sp.Rational("0.86"),
+            QUESTIONS[0].best.subs({sigma: sp.sqrt(3), M: 100 * sp.sin(sp.pi / 4) * 5 * sp.pi / 180 * 2 * sp.pi / 360}),
+            tolerance=sp.Rational("0.005"),
+        ),
+    ),
 )
