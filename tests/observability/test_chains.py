@@ -15,7 +15,7 @@ from navsym.observability.directions import resting_directions
 from navsym.observability.linear import at_point, determinant, residue_rank, scalar_product
 from navsym.observability.motion import motion_of
 from navsym.observability.ring import Ring
-from navsym.studies.atlas.scenes import model_of
+from navsym.studies.atlas import scenes
 from tests.benchmarks.observability import satellite_and_odometer
 from tests.observability.twins import determinant_slowly, maximal_minors
 
@@ -208,7 +208,7 @@ def test_directions_that_nothing_shows_are_short_where_pivots_stand_in_columns_w
 
 def test_directions_that_are_no_columns_of_low_degree_are_exhibited():
     """A range from a body that turns about the vertical: neither short rows nor guesses give the six columns."""
-    found = observe_jointly(model_of("INS: rotation about the vertical: range to a beacon"))
+    found = observe_jointly(scenes.model_of("INS: rotation about the vertical: range to a beacon"))
     assert (found.joint_dimension, found.unobservable.rows, found.proved) == (9, 6, True)
 
 
