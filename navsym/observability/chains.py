@@ -5,7 +5,7 @@ chain a_1 = h_k, a_{j+1} = G^T a_j (joint_correction:1.2). The chain breaks off 
 that depends on the earlier ones, a_{m+1} = theta_1 a_1 + ... + theta_m a_m (joint_correction:1.4):
 m is the dimension, theta the companion coefficients. All arithmetic is exact in Q[parameters];
 a coupling of 1e-15 is not zero. The dimensions are generic: where they drop is the subject of
-``observability_loci``.
+``rank_drops``.
 """
 
 from __future__ import annotations

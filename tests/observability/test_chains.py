@@ -15,6 +15,7 @@ from navsym.observability.directions import resting_directions
 from navsym.observability.linear import at_point, determinant, residue_rank, scalar_product
 from navsym.observability.motion import motion_of
 from navsym.observability.ring import Ring
+from navsym.studies.atlas import scenes
 from tests.benchmarks.observability import satellite_and_odometer
 from tests.observability.twins import determinant_slowly, maximal_minors
 
@@ -203,6 +204,12 @@ def test_directions_that_nothing_shows_are_short_where_pivots_stand_in_columns_w
     assert sum(len(x) for column in columns for x in column) < 14_000
     assert residue_rank(at_point(columns, motion.points(1)[0])) == 13
     assert all(scalar_product(row, column, motion.ring.constant(0)) == 0 for row in rows for column in columns)
+
+
+def test_directions_that_are_no_columns_of_low_degree_are_exhibited():
+    """A range from a body that turns about the vertical: neither short rows nor guesses give the six columns."""
+    found = observe_jointly(scenes.model_of("INS: rotation about the vertical: range to a beacon"))
+    assert (found.joint_dimension, found.unobservable.rows, found.proved) == (9, 6, True)
 
 
 def test_equal_rows_in_disguise_are_recognised():
