@@ -86,6 +86,7 @@ FAULTS: dict[str, list[tuple[Any, str, Any]]] = {
     "integrals are wrong": [(candidates, "list_antiderivatives", lambda *given: iter(("x**3/2", "t**3/2")))],
     "rooms of equations lie": [(search, "EQUATIONS", ((lie,), ()))],
     "rooms of signs lie": [(search, "SIGNS", ((lie,), (), ()))],
+    "points of one size prove": [(words, "refute", say(YES))],
     "words fail nowhere, and are sums": [(words, "draw_sized_points", hold), (words, "find_shares", say([]))],
 }  # fmt: skip
 
