@@ -133,11 +133,8 @@ def by_cases(goal: Any, sample: list[arb]) -> Iterator[Proof]:
 
 
 def by_modulus(goal: Any, sample: list[arb]) -> Iterator[Proof]:
-    """|u v| as |u| |v|, and sqrt(u) and |u| as what they are where its sign is known."""
+    """sqrt(u) and |u| as what they are where its sign is known; else |u v| as |u| |v|."""
     for part in dict.fromkeys(filter(is_root, subterms(goal.term))):
-        if part[0] == "abs" and len(factors := player.list_factors(part[1])) > 1:
-            yield rewrite_atom(write_term(part), write_term(("*", *(("abs", f) for f in factors))))
-            continue
         inside = to_sympy(part[1])
         if inside.has(sp.sin, sp.cos) and sp.count_ops(inside) < 60:
             inside = sp.trigsimp(factor(inside))  # by sin(x)**2 + cos(x)**2 = 1
@@ -147,9 +144,10 @@ def by_modulus(goal: Any, sample: list[arb]) -> Iterator[Proof]:
         if root.has(sp.Pow) and any(not p.exp.is_Integer for p in root.atoms(sp.Pow)):
             continue
         text = to_text(root)
-        for value in (text, f"-({text})"):
-            if not is_below(values_of(goal, player.parse(value))):
-                yield rewrite_atom(write_term(part), value)
+        signed = [v for v in (text, f"-({text})") if not is_below(values_of(goal, player.parse(v)))]
+        if part[0] == "abs" and len(factors := player.list_factors(part[1])) > 1:
+            signed.append(write_term(("*", *(("abs", factor) for factor in factors))))
+        yield from (rewrite_atom(write_term(part), value) for value in signed)
 
 
 def by_factors_of_roots(goal: Any, sample: list[arb]) -> Iterator[Proof]:
