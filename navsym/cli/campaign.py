@@ -11,7 +11,7 @@ from navsym.cli._progress import Progress
 from navsym.cli.output import emit
 from navsym.core.choice import one_of
 
-#: Campaign -> what is attacked, for the table of TRUST.md.
+#: Campaign -> what is attacked, for the table of docs/attacks.md.
 NAMES = {
     "mutants": "mutants of the formulas",
     "parser": "damaged files, and files that lie about their size",

@@ -1,4 +1,4 @@
-"""TRUST.md: its table of the trusted base is true, its files exist, and its commands are commands."""
+"""TRUST.md and the page of the attacks: the table of the trusted base is true, files exist, commands are commands."""
 
 from __future__ import annotations
 
@@ -12,8 +12,8 @@ from navsym.cli.campaign import NAMES
 from tests.attacks.campaigns.readers import READERS
 
 ROOT = Path(__file__).resolve().parents[2]
-PAGE = (ROOT / "TRUST.md").read_text(encoding="utf-8")
-BASE = re.findall(r"^\|[^|`]*`(navsym/[^`]+)` \| ([\d,]+) \|$", PAGE, flags=re.M)
+TRUST, PAGE = ((ROOT / name).read_text(encoding="utf-8") for name in ("TRUST.md", "docs/attacks.md"))
+BASE = re.findall(r"^\|[^|`]*`(navsym/[^`]+)` \| ([\d,]+) \|$", TRUST, flags=re.M)
 
 
 def sources(place):
@@ -30,6 +30,10 @@ def test_the_trusted_base_has_the_lines_that_the_page_says(place, said):
     assert abs(lines - int(said.replace(",", ""))) <= 0.1 * lines, f"{place} has {lines} lines: correct TRUST.md"
 
 
+def test_what_is_trusted_is_one_page():
+    assert len(TRUST.splitlines()) <= 90
+
+
 def test_the_table_of_the_base_is_read():
     assert len(BASE) == 5 and any(place == "navsym/checker.py" for place, _ in BASE)
 
@@ -42,8 +46,8 @@ def test_every_campaign_has_its_figure_and_every_command_names_one():
     assert all(line.count("|") == 5 for line in rows) and len(rows) >= len(NAMES)
 
 
-def test_every_file_that_the_page_names_exists():
-    named = re.findall(r"(?<![\w/])((?:navsym|tests|docs)/[\w/.-]*\w)(?![\w{*])", PAGE)
+def test_every_file_that_the_pages_name_exists():
+    named = re.findall(r"(?<![\w/])((?:navsym|tests|docs)/[\w/.-]*\w)(?![\w{*])", TRUST + PAGE)
     assert len(named) > 20
     assert not [name for name in named if not (ROOT / name).exists() and not (ROOT / f"{name}.py").exists()]
 

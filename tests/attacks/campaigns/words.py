@@ -1,4 +1,4 @@
-"""What a campaign prints: the row for TRUST.md, and its counts for people."""
+"""What a campaign prints: the row for docs/attacks.md, and its counts for people."""
 
 from __future__ import annotations
 
@@ -11,7 +11,7 @@ from navsym.cli.output import table
 
 
 def markdown_row(document: dict[str, Any], what: str, words: Sequence[str], seconds: float) -> str:
-    """The row of the table in TRUST.md: what was attacked, the words of the command, the outcome, the date."""
+    """The row of the table in docs/attacks.md: what was attacked, the words of the command, the outcome, the date."""
     # Counts by the kind of change stand beside those by outcome.
     said = [f"{n:,} {outcome}" for outcome, n in document["counts"].items() if not outcome.startswith("kind ")]
     said += [f"{len(document[name])} {name}" for name in ("wrong", "stopped") if document[name] or name == "wrong"]
