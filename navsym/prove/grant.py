@@ -57,7 +57,7 @@ def write_statements(statement: Statement) -> list[Document] | None:
     """The statements of the entries in the language of the checker; None for what it has no words for."""
     try:
         if isinstance(statement, Optimum):
-            return write_optimum(statement)
+            return write_optimum([statement], [0] * len(statement.support))
         if isinstance(statement, (Equation, Bound)):
             shapes = shape_of(statement.printed), shape_of(statement.derived)
             if shapes[0] == shapes[1]:
@@ -130,26 +130,28 @@ def write_numerals(text: str) -> str:
     return NUMERAL.sub(lambda numeral: format(Decimal(numeral[0]), "f"), text)
 
 
-def write_optimum(statement: Optimum) -> list[Document]:
+def write_optimum(statements: Sequence[Optimum], panels: Sequence[int]) -> list[Document]:
     """What weak duality needs: constraints, places inside, a dual that is feasible, and equal values.
 
-    The place in the interval is start + (end - start) share with a share from 0 to 1.
+    One statement for each measurement, which differ in regressors and interval; ``panels`` has the one of each place.
+    A place in an interval is start + (end - start) share with a share from 0 to 1.
     """
-    whole = sp.Tuple(*statement.regressors, *statement.functional, *statement.interval, *statement.dual)
-    whole = sp.Tuple(*whole, *statement.support, *statement.weights, statement.value)
-    symbols = sorted(whole.free_symbols - {statement.variable}, key=str)
-    ranges = {s.name: write_range(limits) for s, limits in ranges_of(symbols, statement.box).items()}
+    first = statements[0]
+    moving_parts = [part for s in statements for part in (*s.regressors, *s.interval)]
+    whole = sp.Tuple(*moving_parts, *first.functional, *first.dual, *first.support, *first.weights, first.value)
+    symbols = sorted(whole.free_symbols - {first.variable}, key=str)
+    ranges = {s.name: write_range(limits) for s, limits in ranges_of(symbols, first.box).items()}
 
     def read(parts: Iterable[Any]) -> list[Any]:
         return [player.parse(to_text(sp.sympify(part, strict=True))) for part in parts]
 
     def at(term: Any, place: Any) -> Any:
-        return player.replace(term, ("symbol", statement.variable.name), place)
+        return player.replace(term, ("symbol", first.variable.name), place)
 
-    H, P, x, w = map(read, (statement.regressors, statement.functional, statement.dual, statement.weights))
-    times = read(statement.support)
-    (start, end), (value,) = read(statement.interval), read([statement.value])
-    exists = [write_term(term) for term in (*P, *x, *w, *times, start, end, value)]
+    rows, ends = [read(s.regressors) for s in statements], [read(s.interval) for s in statements]
+    P, x, w, times = map(read, (first.functional, first.dual, first.weights, first.support))
+    (value,) = read([first.value])
+    exists = [write_term(term) for term in (*P, *x, *w, *times, *(end for pair in ends for end in pair), value)]
 
     def state(left: Any, relation: str, right: Any, **more: Any) -> Document:
         texts = {"left": write_term(left), "relation": relation, "right": write_term(right)}
@@ -158,16 +160,21 @@ def write_optimum(statement: Optimum) -> list[Document]:
     def total(xs: Sequence[Any], ys: Sequence[Any]) -> Any:
         return ("+", player.ZERO, *(("*", a, b) for a, b in zip(xs, ys, strict=True)))
 
-    moving = ("+", start, ("*", player.subtract(end, start), ("symbol", SHARE)))
-    dual = total(x, [at(h, moving) for h in H])
+    share = {SHARE: ["0", "1", []]}
+    inside, feasible = list[Document](), list[Document]()
+    for H, (start, end) in zip(rows, ends, strict=True):
+        moving = ("+", start, ("*", player.subtract(end, start), ("symbol", SHARE)))
+        needed = dict.fromkeys(pair for h in H for pair in player.conditions(at(h, moving)))
+        inside += [state(t, sign, player.ZERO, **share) for sign, t in needed if SHARE in player.symbols_of(t)]
+        dual = total(x, [at(h, moving) for h in H])
+        feasible += [state(side, "<=", player.ONE, **share) for side in (dual, player.negate(dual))]
+    sums = [total(w, [at(rows[k][j], t) for t, k in zip(times, panels, strict=True)]) for j in range(len(P))]
     sizes = ("+", player.ZERO, *(("abs", weight) for weight in w))
-    needed = dict.fromkeys(pair for h in H for pair in player.conditions(at(h, moving)))
-    inside = [(t, sign) for sign, t in needed if SHARE in player.symbols_of(t)]  # an interval without holes
     return [
-        *(state(t, sign, player.ZERO, **{SHARE: ["0", "1", []]}) for t, sign in inside),
-        *(state(total(w, [at(h, t) for t in times]), "=", p) for h, p in zip(H, P, strict=True)),
-        *(state(a, "<=", b) for t in times for a, b in ((start, t), (t, end))),
-        *(state(a, "<=", player.ONE, **{SHARE: ["0", "1", []]}) for a in (dual, player.negate(dual))),
+        *inside,  # an interval without holes
+        *(state(left, "=", p) for left, p in zip(sums, P, strict=True)),
+        *(state(a, "<=", b) for t, k in zip(times, panels, strict=True) for a, b in ((ends[k][0], t), (t, ends[k][1]))),
+        *feasible,
         *(state(value, "=", side) for side in (total(x, P), sizes)),
     ]
 
@@ -194,10 +201,14 @@ def grant_verdict(statement: Statement, verdict: Verdict, seconds: float = SECON
         return leave_unchecked(verdict, statement.unsaid if isinstance(statement, Property) else apart)
     if isinstance(statement, Property) and verdict.certificate:
         return pass_gate(documents, verdict)
+    return grant_documents(documents, verdict, seconds)
+
+
+def grant_documents(documents: Sequence[Document], verdict: Verdict, seconds: float) -> Verdict:
+    """The verdict on statements in the words of the checker, with a certificate that it has accepted, or OPEN."""
     try:
-        found = (find_refutation if verdict.status == REFUTED else partial(prove_all, seconds=seconds))(
-            documents, verdict
-        )
+        search = find_refutation if verdict.status == REFUTED else partial(prove_all, seconds=seconds)
+        found = search(documents, verdict)
     except REFUSALS as refusal:
         return withdraw(verdict, str(refusal)) if says_more(verdict) else verdict
     return pass_gate(documents, found)

@@ -14,7 +14,7 @@ from navsym.claims import Status
 from navsym.claims.display import display_latex, latex_of, write_card, write_table
 from navsym.core.answers import Answer
 from navsym.core.balls import enclose
-from navsym.core.errors import DomainError, EmptyError
+from navsym.core.errors import DomainError
 from navsym.core.exact import decimal, to_fmpq
 from navsym.guaranteed.phases.boundaries import Boundary
 from navsym.guaranteed.phases.closed_forms import ClosedForm
@@ -211,17 +211,11 @@ class Phases(Answer):
         } | ({"given_up": list(self.given_up)} if self.given_up else {})
 
     def certificates(self) -> list[Mapping[str, Any]]:
-        """Certificates of the regimes without a closed form and of slivers, for :func:`navsym.check`."""
+        """Certificates of closed forms, of the regimes without one and of slivers, for :func:`navsym.check`."""
+        forms = [form_certificate(regime) for regime in self.regimes if regime.closed is not None]
         ranges = [dict(c) for regime in self.regimes for c in regime.certificates]
         thin = [dict(s.certificate) for regime in self.regimes for s in regime.slivers]
-        return ranges + thin + [dict(tie) for tie in self.ties]
-
-    def check(self) -> Any:
-        """Replay the certificates; raises EmptyError where all regimes are closed forms, which the search proves."""
-        if not self.certificates():
-            message = "expected certificates; got closed forms alone, which the search itself proves"
-            raise EmptyError(f"{message}; ask for phases with unique=True (--unique), which adds them", where="check")
-        return Answer.check(self)
+        return forms + ranges + thin + [dict(tie) for tie in self.ties]
 
     def __repr__(self) -> str:
         range_ = f"{self.parameter} from {end_text(self.lower)} to {end_text(self.upper)}"
@@ -441,10 +435,9 @@ class PhaseMap(Answer):
             "uncovered": list(self.uncovered),
         } | ({"given_up": list(self.given_up)} if self.given_up else {})
 
-    def check(self) -> Any:
-        """Raises EmptyError: a map has closed forms, which the search itself proves."""
-        message = "expected certificates; got closed forms alone, which the search itself proves"
-        raise EmptyError(f"{message}; check one point: map.at(...).check()", where="check")
+    def certificates(self) -> list[Mapping[str, Any]]:
+        """Certificates of the closed forms, for :func:`navsym.check`."""
+        return [form_certificate(part.regime) for part in self.parts if part.regime.closed is not None]
 
     def __repr__(self) -> str:
         ranges = zip(self.parameters, (self.first_ends, self.second_ends), strict=True)
@@ -467,6 +460,12 @@ class PhaseMap(Answer):
         regions = write_table(("value", second, first), rows)
         curves = write_table(("curve", "event"), [(html.escape(c.equation), html.escape(c.why)) for c in self.curves])
         return write_card([html.escape(repr(self)), regions, curves])
+
+
+def form_certificate(regime: Regime) -> Mapping[str, Any]:
+    """The certificate of a closed form, for all values of its regime."""
+    assert regime.closed is not None and regime.closed.verdict.certificate is not None
+    return dict(regime.closed.verdict.certificate)
 
 
 def region_document(parts: tuple[Part, ...], first: str, second: str) -> dict[str, Any]:

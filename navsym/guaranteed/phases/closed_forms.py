@@ -27,6 +27,7 @@ from navsym.guaranteed.phases.family import Family, U
 from navsym.guaranteed.phases.patterns import Pattern, PatternInterval, contact_pattern, sample_contacts
 from navsym.guaranteed.phases.recognise import recognise_place
 from navsym.prove.equations import decide_equation, weakest_verdict
+from navsym.prove.grant import grant_documents, write_optimum
 from navsym.prove.ladder import DEFAULT_MEGABYTES, search_verdict
 from navsym.prove.optimum import decide_feasibility, decide_times, decide_values
 from navsym.prove.products import as_product
@@ -409,7 +410,7 @@ def decide_form(
         for row, sigma, ends in zip(family.rows, family.sigma, family.panels, strict=True)
     ]
     try:
-        done = run_limited(decide_jointly, (statements, guess.panels), seconds, DEFAULT_MEGABYTES)
+        done = run_limited(decide_jointly, (statements, guess.panels, seconds / 2), seconds, DEFAULT_MEGABYTES)
     except UnsupportedError as error:  # a guess with a divisor that vanishes for all values is no closed form
         return Verdict(OPEN, "none", evidence=error.message)
     return Verdict(OPEN, "none", evidence="stopped") if isinstance(done, Exhausted) else done
@@ -430,10 +431,16 @@ def signed_parameter(
     return (mirrored, -mirrored, (-upper, -lower)) if bool(enclose(upper) <= 0) else (p, p, (lower, upper))
 
 
-def decide_jointly(statements: Sequence[Optimum], panels: Sequence[int]) -> Verdict:
-    """The four conditions, each statement with one measurement over its bound; the checker does not grant them."""
-    if len(statements) == 1:
-        return search_verdict(statements[0])
+def decide_jointly(statements: Sequence[Optimum], panels: Sequence[int], seconds: float) -> Verdict:
+    """The four conditions, each statement with one measurement over its bound; the checker has the last word."""
+    verdict = search_verdict(statements[0]) if len(statements) == 1 else search_jointly(statements, panels)
+    if not verdict.status.holds or verdict.assumptions:
+        return verdict
+    return grant_documents(write_optimum(statements, panels), verdict, seconds)
+
+
+def search_jointly(statements: Sequence[Optimum], panels: Sequence[int]) -> Verdict:
+    """What the search makes of the conditions of several measurements."""
     first = statements[0]
     sums = tuple(
         sum(

@@ -315,7 +315,7 @@ def find_phases(
     """All regimes for values of the parameter between two exact numbers.
 
     The range is split at singular values. certify : follow regimes without a closed form rigorously.
-    unique : follow the others as well, which proves that no other estimator is optimal and gives them certificates.
+    unique : follow the others as well, which proves that no other estimator is optimal.
     seconds : of work, after which what is known is returned: ``uncovered`` names the rest, ``given_up`` what was left
     progress : called with (finished, all) steps of the search: each stretch is scanned, each regime settled
     Raises DomainError for a range without length, lengths of the interval below zero, and seconds that are none.
