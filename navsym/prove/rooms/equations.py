@@ -133,21 +133,32 @@ def by_cases(goal: Any, sample: list[arb]) -> Iterator[Proof]:
 
 
 def by_modulus(goal: Any, sample: list[arb]) -> Iterator[Proof]:
-    """sqrt(u) and |u| as what they are where its sign is known; else |u v| as |u| |v|."""
-    for part in dict.fromkeys(filter(is_root, subterms(goal.term))):
-        inside = to_sympy(part[1])
-        if inside.has(sp.sin, sp.cos) and sp.count_ops(inside) < 60:
-            inside = sp.trigsimp(factor(inside))  # by sin(x)**2 + cos(x)**2 = 1
-        power = sp.Integer(1) if part[0] == "abs" else sp.Rational(1, 2)
-        power = power if part[0] != "^" else sp.Rational(str(player.constant_of(part[2])))
-        root = inside if part[0] == "abs" else sp.powdenest(sp.sqrt(factor(inside)) ** (2 * power), force=True)
-        if root.has(sp.Pow) and any(not p.exp.is_Integer for p in root.atoms(sp.Pow)):
-            continue
-        text = to_text(root)
-        signed = [v for v in (text, f"-({text})") if not is_below(values_of(goal, player.parse(v)))]
-        if part[0] == "abs" and len(factors := player.list_factors(part[1])) > 1:
-            signed.append(write_term(("*", *(("abs", factor) for factor in factors))))
+    """sqrt(u) and |u| as what they are where its sign is known, all at once and one by one; |u v| as |u| |v|."""
+    values = {part: list_moduli(goal, part) for part in dict.fromkeys(filter(is_root, subterms(goal.term)))}
+    known = [(part, signed[0]) for part, signed in values.items() if len(signed) == 1]
+    if len(known) > 1:
+        proof: Proof = Hole()
+        for part, value in known:
+            proof = rewrite_atom(write_term(part), value) | {"proof": proof}
+        yield proof
+    for part, signed in values.items():
         yield from (rewrite_atom(write_term(part), value) for value in signed)
+        if part[0] == "abs" and len(factors := player.list_factors(part[1])) > 1:
+            yield rewrite_atom(write_term(part), write_term(("*", *(("abs", factor) for factor in factors))))
+
+
+def list_moduli(goal: Any, part: Term) -> list[str]:
+    """What a root may be, of one sign or the other, as far as samples tell."""
+    inside = to_sympy(part[1])
+    if inside.has(sp.sin, sp.cos) and sp.count_ops(inside) < 60:
+        inside = sp.trigsimp(factor(inside))  # by sin(x)**2 + cos(x)**2 = 1
+    power = sp.Integer(1) if part[0] == "abs" else sp.Rational(1, 2)
+    power = power if part[0] != "^" else sp.Rational(str(player.constant_of(part[2])))
+    root = inside if part[0] == "abs" else sp.powdenest(sp.sqrt(factor(inside)) ** (2 * power), force=True)
+    if root.has(sp.Pow) and part[0] != "abs" and any(not p.exp.is_Integer for p in root.atoms(sp.Pow)):
+        return []
+    text = to_text(root)
+    return [value for value in (text, f"-({text})") if not is_below(values_of(goal, player.parse(value)))]
 
 
 def by_factors_of_roots(goal: Any, sample: list[arb]) -> Iterator[Proof]:
