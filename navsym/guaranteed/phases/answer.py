@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import html
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any
 
@@ -212,7 +212,7 @@ class Phases(Answer):
 
     def certificates(self) -> list[Mapping[str, Any]]:
         """Certificates of closed forms, of the regimes without one and of slivers, for :func:`navsym.check`."""
-        forms = [form_certificate(regime) for regime in self.regimes if regime.closed is not None]
+        forms = form_certificates(self.regimes)
         ranges = [dict(c) for regime in self.regimes for c in regime.certificates]
         thin = [dict(s.certificate) for regime in self.regimes for s in regime.slivers]
         return forms + ranges + thin + [dict(tie) for tie in self.ties]
@@ -437,7 +437,7 @@ class PhaseMap(Answer):
 
     def certificates(self) -> list[Mapping[str, Any]]:
         """Certificates of the closed forms, for :func:`navsym.check`."""
-        return [form_certificate(part.regime) for part in self.parts if part.regime.closed is not None]
+        return form_certificates(part.regime for part in self.parts)
 
     def __repr__(self) -> str:
         ranges = zip(self.parameters, (self.first_ends, self.second_ends), strict=True)
@@ -462,10 +462,9 @@ class PhaseMap(Answer):
         return write_card([html.escape(repr(self)), regions, curves])
 
 
-def form_certificate(regime: Regime) -> Mapping[str, Any]:
-    """The certificate of a closed form, for all values of its regime."""
-    assert regime.closed is not None and regime.closed.verdict.certificate is not None
-    return dict(regime.closed.verdict.certificate)
+def form_certificates(regimes: Iterable[Regime]) -> list[Mapping[str, Any]]:
+    """The certificates of closed forms, each for all values of its regime."""
+    return [dict(c) for regime in regimes if regime.closed is not None and (c := regime.closed.verdict.certificate)]
 
 
 def region_document(parts: tuple[Part, ...], first: str, second: str) -> dict[str, Any]:
