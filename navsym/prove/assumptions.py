@@ -61,8 +61,9 @@ def is_nonnegative(expression: sp.Basic, box: Box) -> bool:
 
 
 def is_nonzero(expression: sp.Basic, box: Box) -> bool:
-    """True when the expression is proved to vanish nowhere on the box."""
-    if is_positive(expression, box) or is_positive(-expression, box):
+    """True when the expression is proved to vanish nowhere on the box; a negative power is zero nowhere."""
+    is_reciprocal = expression.is_Pow and expression.exp.is_negative
+    if is_reciprocal or is_positive(expression, box) or is_positive(-expression, box):
         return True
     limits = ranges_of(sorted(expression.free_symbols, key=str), box).values()
     has_parts = any(limit.parted for limit in limits)  # of two signs, with a gap between

@@ -88,9 +88,10 @@ def test_peaks_and_dips_are_found_before_anything_is_confirmed(text, symbols):
 
 
 @pytest.mark.long
-def test_an_error_inside_the_search_is_no_verdict_of_its_own():
+def test_a_power_with_a_symbol_above_is_stated_for_positive_bases_and_says_so():
     verdict = nav.prove("sum(x**k, k, 0, oo) = 1/(1 - x)", x=("-1/2", "1/2"))
-    assert verdict.status == nav.OPEN and "symbolic power" not in verdict.evidence
+    assert verdict.status == PROVED and verdict.assumptions == ("x > 0",)
+    assert nav.prove("sum(x**k, k, 0, oo) = 1/(1 - x) + 1e-9", x=("-1/2", "1/2")).status == REFUTED
 
 
 @pytest.mark.parametrize("excess", ["1e-18", "1e-30", "1e-300"])
