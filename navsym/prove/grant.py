@@ -201,7 +201,9 @@ def grant_verdict(statement: Statement, verdict: Verdict, seconds: float = SECON
         return leave_unchecked(verdict, statement.unsaid if isinstance(statement, Property) else apart)
     if isinstance(statement, Property) and verdict.certificate:
         return pass_gate(documents, verdict)
-    return grant_documents(documents, verdict, seconds)
+    found = grant_documents(documents, verdict, seconds)
+    is_fact = isinstance(statement, Property) and found.status == REFUTED
+    return replace(found, counterexample=verdict.counterexample) if is_fact else found  # it has no symbols of its own
 
 
 def grant_documents(documents: Sequence[Document], verdict: Verdict, seconds: float) -> Verdict:
