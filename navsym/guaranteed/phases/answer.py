@@ -435,10 +435,6 @@ class PhaseMap(Answer):
             "uncovered": list(self.uncovered),
         } | ({"given_up": list(self.given_up)} if self.given_up else {})
 
-    def certificates(self) -> list[Mapping[str, Any]]:
-        """Certificates of the closed forms, for :func:`navsym.check`."""
-        return form_certificates(part.regime for part in self.parts)
-
     def __repr__(self) -> str:
         ranges = zip(self.parameters, (self.first_ends, self.second_ends), strict=True)
         where = " and ".join(f"{name} from {end_text(a)} to {end_text(b)}" for name, (a, b) in ranges)

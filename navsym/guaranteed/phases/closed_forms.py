@@ -393,9 +393,17 @@ def solve_weights(
 
 
 def decide_form(
-    family: Family, guess: ClosedForm, values: Mapping[sp.Symbol, sp.Expr], box: Box, seconds: float
+    family: Family,
+    guess: ClosedForm,
+    values: Mapping[sp.Symbol, sp.Expr],
+    box: Box,
+    seconds: float,
+    most: float = MOST_SECONDS,
 ) -> Verdict:
-    """The ladder's verdict on the pair with expressions in the symbols of a box for the parameters."""
+    """The ladder's verdict on the pair with expressions in the symbols of a box for the parameters.
+
+    most : seconds that the certificate of the whole may take, 0 for none
+    """
     put = lambda e: sp.sympify(e, strict=True).subs(values)  # noqa: E731
     statements = [
         Optimum(
@@ -412,7 +420,9 @@ def decide_form(
         for row, sigma, ends in zip(family.rows, family.sigma, family.panels, strict=True)
     ]
     try:
-        done = run_limited(decide_jointly, (statements, guess.panels, seconds / 2), seconds, DEFAULT_MEGABYTES)
+        done = run_limited(
+            decide_jointly, (statements, guess.panels, min(seconds / 2, most)), seconds, DEFAULT_MEGABYTES
+        )
     except UnsupportedError as error:  # a guess with a divisor that vanishes for all values is no closed form
         return Verdict(OPEN, "none", evidence=error.message)
     return Verdict(OPEN, "none", evidence="stopped") if isinstance(done, Exhausted) else done
@@ -439,9 +449,9 @@ def decide_jointly(statements: Sequence[Optimum], panels: Sequence[int], seconds
     Without one the verdict says ``unchecked``: the checker has then seen each sign and each identity, not their sum.
     """
     verdict = search_verdict(statements[0]) if len(statements) == 1 else search_jointly(statements, panels)
-    if not verdict.status.holds or verdict.assumptions:
-        return verdict
-    granted = grant_documents(write_optimum(statements, panels), verdict, min(seconds, MOST_SECONDS))
+    if not verdict.status.holds or verdict.assumptions or not seconds:
+        return leave_unchecked(verdict)
+    granted = grant_documents(write_optimum(statements, panels), verdict, seconds)
     return granted if granted.status.holds else leave_unchecked(verdict)
 
 

@@ -392,7 +392,7 @@ def prove_part(
         puts = {regime.family.parameter: at.subs(second, value), second: value}
         seconds = limit.share(1 / (2 * len(choices) - k + (halvings > 0))).left()
         seconds = min(seconds, QUICK) if k < len(choices) else seconds
-        verdict = decide_form(regime.family, form, puts, {ACROSS: ends, name: box}, seconds)
+        verdict = decide_form(regime.family, form, puts, {ACROSS: ends, name: box}, seconds, most=0)
         if verdict.status.holds and not verdict.assumptions:
             proved = replace(form, verdict=verdict)
             return [replace(part, regime=replace(regime, closed=proved, status=verdict.status))]

@@ -259,10 +259,15 @@ def vanishes(goal: Any) -> bool:
 
 
 def values_of(goal: Any, term: Term) -> list[arb]:
-    """Balls of another term at the points of a goal; of both signs, at those alone where all has a value."""
+    """Balls of another term at the points of a goal.
+
+    If they have both signs, and something exists for one sign of its parts only, those where all of it has a value.
+    """
     values = sample_goal(goal._replace(term=term))
-    if goal.exists and is_below(values) and is_below(values, -1):
-        return sample_goal(goal._replace(term=term), is_strict=True)
+    if is_below(values) and is_below(values, -1):
+        needed = player.set_union(map(player.conditions, goal.exists))
+        if any(relation != "!=" for relation, _ in needed):
+            return sample_goal(goal._replace(term=term), is_strict=True)
     return values
 
 
