@@ -150,12 +150,6 @@ def fold(end: Term) -> Term:
     return end if value is None else player.number(value)
 
 
-def is_even(exponent: Term) -> bool:
-    """Whether an exponent is a whole even number above zero."""
-    q = player.constant_of(exponent)
-    return q is not None and q > 0 and q.q == 1 and int(q) % 2 == 0
-
-
 def find_span(term: Term, box: Any) -> Span | None:
     """The values that a term takes, where each symbol stands in it once and it is made of simple steps; else None."""
     if not player.symbols_of(term):
