@@ -2,26 +2,24 @@
 
 from __future__ import annotations
 
-import shutil
 from collections import Counter
 
 import pytest
 
 import navsym as nav
-from tests.attacks.campaigns.code import Subject
+from tests.attacks.campaigns.code import TOOLS, Subject, lacking_tool
 from tests.attacks.traps import list_traps, read_trap
 
 LONG = pytest.mark.long
-TOOLS = {"python": "python3", "c": "gcc", "cpp": "g++", "matlab": "octave", "rust": "rustc"}
 
 
 @pytest.mark.parametrize(
-    ("language", "every"), [("python", 4), ("c", 4), *(pytest.param(name, 1, marks=LONG) for name in TOOLS)]
+    ("language", "every"),
+    [("python", 4), ("c", 4), *(pytest.param(name, 1, marks=LONG) for name in ("python", *TOOLS))],
 )
 def test_what_is_read_of_a_trap_is_what_it_computes(language, every):
-    tool = TOOLS[language]
-    if shutil.which(tool) is None:
-        pytest.skip(f"needs {tool}")
+    if why := lacking_tool(language):
+        pytest.skip(why)
     answers = {trap.name: read_trap(trap) for trap in [*list_traps(language)][::every]}
     assert {name: notes for name, (answer, notes) in answers.items() if answer in ("wrong", "silent")} == {}
     counts = Counter(answer for answer, _ in answers.values())

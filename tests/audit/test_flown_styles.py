@@ -7,16 +7,23 @@ from __future__ import annotations
 
 import math
 import operator
-import shutil
 
 import pytest
 
 from navsym.audit.mend import evaluate
 from navsym.audit.names import Names
 from navsym.audit.values import Array, List, Scalar
-from tests.attacks.campaigns.code import OWN, Subject, compute, draw_points, is_same, list_subjects, read_code
+from tests.attacks.campaigns.code import (
+    OWN,
+    Subject,
+    compute,
+    draw_points,
+    is_same,
+    lacking_tool,
+    list_subjects,
+    read_code,
+)
 
-TOOLS = {"c": "gcc", "cpp": "g++", "rust": "rustc", "python": "python3", "matlab": "octave"}
 FIRST = ("update", "rows")  # of Eigen, whose compiler is slow
 NAMES = sorted(path.stem for path in OWN.iterdir())
 SIGNS = {"<": operator.lt, "<=": operator.le, ">": operator.gt, ">=": operator.ge, "==": operator.eq, "!=": operator.ne}
@@ -59,8 +66,8 @@ def holds(condition, point):
 )
 def test_what_is_read_of_a_function_is_what_runs(name):
     subject = next(s for s in list_subjects() if s.name == name)
-    if shutil.which(TOOLS[subject.language]) is None:
-        pytest.skip(f"needs {TOOLS[subject.language]}")
+    if why := lacking_tool(subject.language):
+        pytest.skip(why)
     names = Names()
     reading = read_code("code", subject.text, subject, names).read()
     assert not reading.refused

@@ -3,14 +3,13 @@
 from __future__ import annotations
 
 import random
-import shutil
 
 import pytest
 
 from navsym.audit.mend import evaluate
 from navsym.audit.names import Names
 from navsym.audit.values import Scalar
-from tests.attacks.campaigns.code import Subject, compute, draw_points, is_same, read_code
+from tests.attacks.campaigns.code import Subject, compute, draw_points, is_same, lacking_tool, read_code
 
 NUMBER = 60
 FORMS = {
@@ -21,7 +20,6 @@ FORMS = {
     "matlab": "function y = f(a, b, c, d)\n    y = zeros(1, {n});\n{body}\nend\n",
 }
 LINES = {"matlab": "    y({one}) = {text};", "python": "    y[{k}] = {text}"}
-TOOLS = {"c": "gcc", "cpp": "g++", "rust": "rustc", "python": "python3", "matlab": "octave"}
 
 
 def write_expression(chosen, language, depth):
@@ -49,8 +47,8 @@ def write_expression(chosen, language, depth):
 @pytest.mark.parametrize("language", FORMS)
 def test_random_spellings_are_read_as_they_run(language, seed):
     """All are read, but towers of powers with signs inside; the compiler or interpreter computes the same."""
-    if shutil.which(TOOLS[language]) is None:
-        pytest.skip(f"needs {TOOLS[language]}")
+    if why := lacking_tool(language):
+        pytest.skip(why)
     chosen = random.Random(f"{language} {seed}")
     texts = [write_expression(chosen, language, 4) for _ in range(NUMBER)]
     line = LINES.get(language, "    y[{k}] = {text};")

@@ -40,6 +40,7 @@ from navsym.audit.sources import Source, find_function, list_inputs, read_unit
 from navsym.audit.values import Scalar
 from navsym.core.errors import NavsymError
 from navsym.core.sandbox import Exhausted, run_limited
+from navsym.export.languages.targets import answering
 from tests.attacks.campaigns.batches import Batch, Result, result
 
 SIZE = 100
@@ -56,6 +57,8 @@ GALLERY = Path(__file__).resolve().parents[3] / "examples" / "audit" / "gallery"
 #: Claims whose code is short enough to be read by eye.
 CLAIMS = ("alpha_beta_filter:5", "alpha_beta_filter:4")
 LANGUAGES = {".c": "c", ".cpp": "cpp", ".py": "python", ".m": "matlab", ".rs": "rust"}
+#: What runs a language: numpy is here, the others may not be.
+TOOLS = {"c": "gcc", "cpp": "g++", "rust": "rustc", "matlab": "octave"}
 TOKEN = re.compile(r"[A-Za-z_]\w*|\d+\.?\d*(?:[eE][+-]?\d+)?f?|\*\*|[-+*/]=?|\S")
 #: The body of each function, behind its head.
 BODIES = {
@@ -465,6 +468,12 @@ def decide_mutant(subject: Subject, mutant: str, wants_mend: bool = False) -> tu
     except NavsymError:
         return "refused", ""
     return next(s for s in ("REFUTED", "OPEN", "CERTIFIED", "PROVED") if s in statuses), mended
+
+
+def lacking_tool(language: str) -> str:
+    """Why the code of a language cannot be run here; empty when it can: a stub without its compiler does not answer."""
+    tool = TOOLS.get(language)
+    return "" if tool is None or answering(tool) is not None else f"needs {tool}, which does not answer here"
 
 
 def make_batches(inputs: int, seed: int = 0) -> list[Batch]:
