@@ -9,6 +9,7 @@ from typing import Any
 
 import sympy as sp
 from sympy.concrete.gosper import gosper_term
+from sympy.integrals.rationaltools import ratint
 from sympy.simplify.fu import TR1, TR2, TR8
 
 from navsym.core.errors import NavsymError
@@ -146,19 +147,19 @@ def list_antiderivatives(question: Any, goal: Any, pair: Any, signs: list[int]) 
     x, f = to_sympy(("symbol", question.variable)), to_sympy(question.term)
     for bend, sign in zip(list_bends(question), signs, strict=True):
         f = f.subs(sp.Abs(to_sympy(bend)), sign * to_sympy(bend))
-    f = lower_exponentials(f, x, pair)
+    quotient = lower_exponentials(f, x, pair)
     known = {to_sympy(("symbol", n)): sp.Symbol(n, positive=True) for n, r in goal.box.items() if is_positive(r)}
     back = {value: key for key, value in known.items()}
-    seen: set[str] = set()
+    seen, is_far = set[str](), any(map(player.is_infinite, pair))
     from sympy.integrals.manualintegrate import manualintegrate  # takes long to load, and few claims have integrals
 
-    for method in (integrate_waves, integrate_bells, integrate_quotient_of_cosine, manualintegrate, integrate_slowly):
+    for method in (integrate_terms, integrate_bells, integrate_quotient_of_cosine, manualintegrate, integrate_slowly):
         try:
-            found = method(f.subs(known), x)
+            found = integrate_by(method, (f if method is integrate_terms else quotient).subs(known), x)
             if found is None:
                 continue
             form = turn_logarithms(choose_branch(found).subs(back), question, goal, pair)
-            text = from_sympy(lower_exponentials(form, x, pair))
+            text = from_sympy(lower_exponentials(join_logarithms(form) if is_far else form, x, pair))
         except (NavsymError, *TROUBLE):
             continue
         if text not in seen:
@@ -166,6 +167,15 @@ def list_antiderivatives(question: Any, goal: Any, pair: Any, signs: list[int]) 
             yield text
         if method is integrate_bells:
             return  # the others look for long, and find nothing else
+
+
+@functools.lru_cache(maxsize=64)
+def integrate_by(method: Callable[[Any, Any], Any], f: Any, x: Any) -> Any:
+    """What a method finds, or None; a statement that is refuted is read several times."""
+    try:
+        return method(f, x)
+    except TROUBLE:
+        return None
 
 
 def is_positive(limit: Any) -> bool:
@@ -188,6 +198,25 @@ def turn_logarithms(form: Any, question: Any, goal: Any, pair: Any) -> Any:
         if sign_at_middle(term, question, goal, pair) < 0:
             found[part] = sp.log(-part.args[0])
     return form.xreplace(found)
+
+
+def join_logarithms(form: Any) -> Any:
+    """Logarithms as one where their shares have rational ratios: the parts of a sum may grow, and the sum not."""
+    if len(form.atoms(sp.log)) < 2:
+        return form
+    groups: dict[Any, list[tuple[Any, Any]]] = {}
+    rest = sp.S.Zero
+    for term in sp.Add.make_args(sp.expand(form)):
+        share, logarithm = term.as_independent(sp.log, as_Add=False)
+        if isinstance(logarithm, sp.log):
+            number, beside = share.as_coeff_Mul(rational=True)
+            groups.setdefault(beside, []).append((number, logarithm.args[0]))
+        else:
+            rest += term
+    for beside, parts in groups.items():
+        common = sp.ilcm(1, *(number.q for number, _ in parts))
+        rest += beside / common * sp.log(sp.Mul(*(part ** (number * common) for number, part in parts)))
+    return rest
 
 
 def lower_exponentials(form: Any, x: Any, pair: Any) -> Any:
@@ -223,10 +252,13 @@ def integrate_slowly(f: Any, x: Any) -> Any:
     return None if found.has(sp.Integral) else found
 
 
-def integrate_waves(f: Any, x: Any) -> Any:
-    """A sum of polynomials times exponentials times sines and cosines of a x + b, term by term."""
-    total = sp.Integer(0)
-    for term in sp.Add.make_args(sp.expand(linearise(f, x))):
+def integrate_terms(f: Any, x: Any) -> Any:
+    """A sum of quotients of polynomials, and of polynomials times exponentials times sines and cosines of a x + b."""
+    terms = sp.Add.make_args(sp.expand(linearise(f, x)))
+    quotients = [t for t in terms if t.is_rational_function(x) and not t.is_polynomial(x)]
+    fractions = sp.Add.make_args(sp.apart(sp.together(sp.Add(*quotients)), x)) if quotients else ()
+    total = sp.Add(*(ratint(fraction, x, real=True) for fraction in fractions))
+    for term in (t for t in terms if t not in quotients):
         share, rest = term.as_independent(x, as_Add=False)
         found = integrate_wave(sp.powsimp(rest), x)
         if found is None:

@@ -12,7 +12,7 @@ import pytest
 
 import navsym as nav
 from navsym import checker
-from navsym.claims import CERTIFIED, PROVED, REFUTED
+from navsym.claims import CERTIFIED, OPEN, PROVED, REFUTED
 from navsym.language.vectors import print_value_latex, read_value
 from navsym.prove.claimfile import Symbols, decide_claim, read_claim
 from tests.prove.calculus.forgeries import ALL, BALLS, COUNT, NATURAL, REAL, I, piece, quotient, steps, whole
@@ -244,6 +244,22 @@ def test_the_other_side_is_tried_as_an_antiderivative_and_exponentials_fall_at_i
     verdict = nav.prove(f"{text} = {true}", **given)
     assert verdict.status == PROVED and verdict.check().accepted
     assert nav.prove(f"{text} = {false}", **given).status == REFUTED
+
+
+@pytest.mark.parametrize(
+    ("text", "true", "false", "given"),
+    [
+        ("integral(-2/((x + 4)*(x + 2)), x, 0, oo)", "-log(2)", "log(2)", {}),
+        ("integral(1/(x*(x + 1)), x, T, oo)", "log(1 + 1/T)", "log(1 + 2/T)", {"T": "positive"}),
+        ("integral(1/(1 + x**3), x, 0, oo)", "2*pi/(3*sqrt(3))", "pi/sqrt(3)", {}),
+        ("integral(4*exp(-4*x)*cos(3*x) + 3*exp(-4*x)*sin(3*x) + a/(x + 2)**2, x, 0, oo)", "1 + a/2", "1 + a", {}),
+    ],
+)
+def test_parts_that_grow_alone_are_taken_together_at_infinity_and_quotients_apart(text, true, false, given):
+    """log(x + 4) - log(x + 2) has a limit, and neither logarithm has one."""
+    assert nav.prove(f"{text} = {true}", seconds=4.0, **given).status == PROVED
+    assert nav.prove(f"{text} = {false}", seconds=4.0, **given).status == REFUTED
+    assert nav.prove("integral(1/(x + 1), x, 0, oo) = log(2)", seconds=1.0).status == OPEN
 
 
 @pytest.mark.parametrize(
