@@ -6,6 +6,7 @@ holds at every sampled point is CONFIRMED, never more, until a proof is found.
 
 from __future__ import annotations
 
+import functools
 from collections.abc import Callable, Sequence
 from dataclasses import replace
 
@@ -20,6 +21,7 @@ from navsym.prove.assumptions import remaining_assumptions
 from navsym.prove.identities import has_unique_form, is_zero, vanishes_identically
 from navsym.prove.sampling.points import Sample, search_counterexample
 from navsym.prove.sampling.second_look import BITS, Look, look_again, look_at_places
+from navsym.prove.signs import Sign, prove_sign
 from navsym.prove.wording import decimal_ends, point_text, refute_at_point, scope_of
 
 ENOUGH_POINTS = 32
@@ -34,6 +36,8 @@ EXCLUDES: dict[str, Callable[[arb], bool]] = {
     ">=": lambda ball: bool(ball < 0),
     "!=": lambda ball: bool(ball == 0),
 }
+#: Symbols from which on a search by the rooms that think little comes before a long look, and its bounds.
+MANY, FIRST = 4, ((8, 100, 1),)
 #: Relations that equality breaks.
 STRICT = ("<", ">", "!=")
 STRENGTH = (REFUTED, OPEN, CONFIRMED, CERTIFIED, PROVED)
@@ -169,7 +173,9 @@ def decide_difference(
     if look is not None and look.counterexample is None and not is_equation:
         words = "no sign between real roots contradicts it; no proof was found"
         return Verdict(OPEN, "real roots", scope, evidence=words)
-    look = look or look_again(difference, excludes, box, sides, relation in STRICT, margins)
+    if look is None:
+        settled = functools.cache(lambda: not is_equation and is_easily_proved(difference, relation, box, margins))
+        look = look_again(difference, excludes, box, sides, relation in STRICT, margins, settled)
     verdict = judge_look(look, sample, scope, what)
     doubt = doubt_of(look, relation)
     if not doubt and verdict.status == CONFIRMED:
@@ -188,6 +194,15 @@ def look_at_roots(
     looks = [look_at_places(margin, EXCLUDES[">="], box, sides) for margin in margins]
     broken = (look for look in looks if look is not None and look.counterexample is not None)
     return next(broken, None if None in looks else Look())
+
+
+def is_easily_proved(difference: sp.Expr, relation: str, box: Box, margins: Sequence[sp.Expr]) -> bool:
+    """Whether cheap rooms prove a relation, so that nothing breaks it: a long look takes seconds in many symbols."""
+    if len(difference.free_symbols) < MANY:
+        return False
+    wanted = {"!=": Sign.NONZERO, "<": Sign.POSITIVE, ">": Sign.POSITIVE}.get(relation, Sign.NONNEGATIVE)
+    parts = (difference,) if relation == "!=" else margins
+    return all(prove_sign(part, box, wanted, FIRST).at_least(wanted) for part in parts)
 
 
 def doubt_of(look: Look, relation: str) -> str:

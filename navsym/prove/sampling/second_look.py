@@ -200,6 +200,7 @@ def look_again(
     sides: Sequence[sp.Expr] = (),
     zero_breaks: bool = False,
     goals: Sequence[sp.Expr] = (),
+    settled: Callable[[], bool] = bool,
 ) -> Look:
     """Look again for a point that breaks ``difference relation 0``.
 
@@ -207,19 +208,20 @@ def look_again(
     sides       : expressions that have to be finite at the point
     zero_breaks : an exactly vanishing difference contradicts the relation, as for < and !=
     goals       : expressions whose lowest place is worth a try
+    settled     : whether no point breaks the relation; asked before places that take long to find
     """
     symbols = sorted(difference.free_symbols | set().union(*(s.free_symbols for s in sides)), key=str)
     limits = ranges_of(symbols, box)
-    places = itertools.chain(
-        draw_points(symbols, box, ORDINARY),
-        special_points(limits),
-        zeros_of_factors(difference, limits) if zero_breaks else (),
-        meeting_points(difference, limits),
-        *(descents(goal, limits) for goal in goals),
-        *(rays(goal, limits) for goal in goals),
-    )
+
+    def far_places() -> Iterator[Point]:
+        if not settled():
+            yield from meeting_points(difference, limits)
+            for way, goal in itertools.product((descents, rays), goals):
+                yield from way(goal, limits)
+
+    zeros = zeros_of_factors(difference, limits) if zero_breaks else ()
     positive = negative = touching = None
-    for point in places:
+    for point in itertools.chain(draw_points(symbols, box, ORDINARY), special_points(limits), zeros, far_places()):
         ball = sharp_value(difference, point, sides)
         if ball is None:
             continue
@@ -230,7 +232,7 @@ def look_again(
         touching = point if zero_breaks and abs(ball) < TOUCHING else touching
         positive = point if positive is None and ball > 0 else positive
         negative = point if negative is None and ball < 0 else negative
-    found = look_close(difference, excludes, limits, sides, goals)
+    found = Look() if settled() else look_close(difference, excludes, limits, sides, goals)
     if found.counterexample is not None:
         return found
     return replace(found, positive=positive, negative=negative, touching=touching)
