@@ -26,7 +26,7 @@ else:
 
 #: Tests that are grouped by the paper or notebook that is their first parameter.
 APART = re.compile(
-    r"tests/(?:derivations/test_(?:papers|power|mutants)|fidelity/test_(?:statements|units)|test_notebooks)\.py"
+    r"tests/(?:derivations/test_(?:papers|power|mutants|rules)|fidelity/test_(?:statements|units)|test_notebooks)\.py"
     r"::\w+\[(\d*[a-z_]+)(?:-|\])"
 )
 #: Files of the export whose sample functions and programs are decided once for all of them.

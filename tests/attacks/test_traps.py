@@ -15,7 +15,7 @@ LONG = pytest.mark.long
 
 @pytest.mark.parametrize(
     ("language", "every"),
-    [("python", 4), ("c", 4), *(pytest.param(name, 1, marks=LONG) for name in ("python", *TOOLS))],
+    [("python", 8), ("c", 8), *(pytest.param(name, 1, marks=LONG) for name in ("python", *TOOLS))],
 )
 def test_what_is_read_of_a_trap_is_what_it_computes(language, every):
     if why := lacking_tool(language):

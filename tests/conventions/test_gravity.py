@@ -120,6 +120,7 @@ def test_gravity_of_one_number_along_the_normal_is_linearised_as_such(words, qua
             assert abs(mp.mpf(value.str(40, radius=False)) - expected[i, j]) < 1e-9, (i, j)
 
 
+@pytest.mark.long
 def test_a_radial_gradient_beside_two_radii_says_by_which():
     words = {"frame": "earth", "earth_rate": "kept", "centrifugal": "dropped", "gravity_gradient": "radial"}
     place = {"earth_rate": "W", "position": ["x1", "x2", "x3"]}

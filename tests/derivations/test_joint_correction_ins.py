@@ -75,6 +75,7 @@ def test_decoupled_gains_have_their_poles_in_spite_of_the_link(flight):
     assert np.allclose(chain_matrix(0.3)[0], C[0, :6] * [1, 1, 1, 0, 1, 1] + [0, 0, 0, 0.3, 0, 0])
 
 
+@pytest.mark.long
 def test_drawn_runs_agree_with_the_propagated_covariance_through_all_situations(flight):
     errors = Errors()
     chosen = plan([(V, 40), (B, 20), (V, 10), (N, 10), (P, 20)], STEP)

@@ -254,6 +254,7 @@ def test_a_value_does_not_enter_a_claim_with_a_proved_range() -> None:
         Chain("loose", links, {"rate": "rate"}).function("loose", programs.decided, "double")
 
 
+@pytest.mark.long
 @pytest.mark.skipif(shutil.which("gcc") is None, reason="needs a C compiler")
 def test_the_benchmark_runs_at_a_tiny_size() -> None:
     assert {"hand-written C", "casadi C", "lambdify(cse=True), batch"} <= set(benchmark.measure(1000))

@@ -42,6 +42,7 @@ def test_a_functional_that_respects_such_a_relation_is_estimated():
     assert float(solved([sin(s), cos(s), sin(s + 1)], [1, 0, cos(1)]).value) == pytest.approx(value, rel=1e-15)
 
 
+@pytest.mark.long
 def test_more_functions_than_the_first_grid_has_points_are_not_called_dependent():
     """The leading coefficient of degree 29 on [0, 1] costs 2**57, that of the Chebyshev polynomial."""
     solution = solved([s**k for k in range(30)], [int(k == 29) for k in range(30)])

@@ -128,6 +128,7 @@ def test_the_ratio_of_two_noise_bounds_is_a_parameter():
     assert set(accepted(answer)) <= {"all", "range", "sliver"}
 
 
+@pytest.mark.long
 def test_of_several_optimal_estimators_a_regime_keeps_one():
     document = {
         "model": {"name": "oscillator", "states": ["x", "v"], "F": [["0", "1"], ["-w**2", "0"]]},

@@ -65,6 +65,7 @@ def rotation(h, sigma, target, speed="1"):
     return {"model": {"name": "rotation", "states": ["x", "v"], "F": turn}, "measurement": measured} | rest
 
 
+@pytest.mark.long
 def test_a_touch_at_an_irrational_angle_is_proved_and_not_only_sampled():
     document = rotation([["1", "0"], ["0", "1"]], ["1", "3"], ["2", "1"])
     (found,) = solved(document, sp.Rational(1, 2), sp.Rational(13, 20)).regimes
@@ -73,6 +74,7 @@ def test_a_touch_at_an_irrational_angle_is_proved_and_not_only_sampled():
     assert float(known.lower) == pytest.approx(float(found.closed.value), rel=1e-15)
 
 
+@pytest.mark.long
 def test_a_constant_value_of_one_measurement_at_an_irrational_time_is_proved():
     answer = solved(rotation([["1", "1/2"]], ["5"], ["2", "2"], speed="2"), 3, sp.Rational(13, 4))
     assert regimes(answer) == [("3", "13/4", "4*sqrt(10)")] and answer.regimes[0].status is PROVED

@@ -8,6 +8,7 @@ from pathlib import Path
 SCRIPT = Path(__file__).parents[1] / "benchmarks" / "transition.py"
 
 
+@pytest.mark.long
 def test_the_benchmark_prints_times_of_both_and_their_ratio():
     arguments = [sys.executable, str(SCRIPT), "--rounds", "1", "--limit", "20", "--only", "oscillator, 2"]
     run = subprocess.run(arguments, capture_output=True, text=True, timeout=60, check=True)

@@ -111,7 +111,7 @@ def random_symbolic_model(seed: int) -> LinearModel:
     return LinearModel(F, None, H)
 
 
-@pytest.mark.parametrize("seed", range(16))
+@pytest.mark.parametrize("seed", [*range(8), *(pytest.param(seed, marks=pytest.mark.long) for seed in range(8, 16))])
 def test_drops_by_cases_hold_at_a_point_exactly_where_the_rank_is_smaller(seed):
     model = random_symbolic_model(seed)
     found = observe_jointly(model)
@@ -154,7 +154,9 @@ def dense_model(n: int, symbols: tuple[sp.Symbol, ...], outputs: int, seed: int)
     return LinearModel(sp.Matrix(n, n, entries), None, H)
 
 
-@pytest.mark.parametrize(("n", "count", "outputs"), [(5, 3, 2), (7, 2, 2), (5, 2, 3)])
+@pytest.mark.parametrize(
+    ("n", "count", "outputs"), [(5, 3, 2), pytest.param(7, 2, 2, marks=pytest.mark.long), (5, 2, 3)]
+)
 def test_dense_systems_of_several_measurements_are_listed_completely(n, count, outputs):
     """By the determinants of the staircases; pivots alone left them open. Every listed point has to be a drop."""
     symbols = (a, b, c)[:count]

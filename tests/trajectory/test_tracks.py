@@ -161,7 +161,7 @@ def test_a_parabola_is_differentiated_exactly(method):
     assert set(found.flags) == {"used"}
 
 
-@pytest.mark.parametrize("method", ["filter", "smoother"])
+@pytest.mark.parametrize("method", ["smoother", pytest.param("filter", marks=pytest.mark.long)])
 @pytest.mark.parametrize("order", [pytest.param(2, marks=pytest.mark.long), 3])
 def test_standard_deviations_are_consistent_with_the_errors(method, order):
     """Normalised squared errors of independent stretches lie in the 95 % range of their mean."""
