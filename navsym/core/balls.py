@@ -122,6 +122,8 @@ def read_instruction(node: sp.Basic) -> tuple[str, Sequence[sp.Basic], Any]:
         return power_instruction(node)
     if node.func in FUNCTIONS:
         return FUNCTIONS[node.func], node.args, None
+    if hasattr(node, "on_balls"):  # a function that knows its own enclosure
+        return "own", node.args, node.on_balls
     raise UnsupportedError(f"expected an expression of the language; got {node.func.__name__}; rewrite it")
 
 
@@ -279,6 +281,7 @@ OPERATIONS: dict[str, Callable[[Any, list[Any], Any], Any]] = {
     "atan2": lambda constant, arguments, values: two_argument_arctangent(*arguments),
     "max": lambda constant, arguments, values: extreme_of("max", arguments),
     "min": lambda constant, arguments, values: extreme_of("min", arguments),
+    "own": lambda constant, arguments, values: constant(*arguments),
 }
 OPERATIONS |= {name: unary(methodcaller(name)) for name in ("sin", "cos", "exp", "atan")}
 OPERATIONS |= {name: unary(hyperbolic(name)) for name in ("sinh", "cosh", "tanh")}

@@ -21,7 +21,7 @@ from flint import arb, arb_mat, fmpq, fmpq_mat
 
 from navsym.claims import CERTIFIED, OPEN, Status
 from navsym.claims.display import write_card, write_table
-from navsym.core.answers import Answer
+from navsym.core.answers import Answer, named, plain
 from navsym.core.balls import precision
 from navsym.core.errors import (
     DomainError,
@@ -128,10 +128,8 @@ class Design(Answer):
 
     def document(self) -> dict[str, Any]:
         """The JSON document of ``navsym solve --design``."""
-        points = [{name: getattr(p, name) for name in DesignPoint.__slots__} for p in self.points]
-        head = {"target": self.target, "status": str(self.status), "value": self.value.document()}
-        rest = {"bought": list(self.bought), "cost": self.cost, "support": points}
-        return head | rest | {"certificate": dict(self.certificate)}
+        head = named(self, "target status value bought cost")
+        return head | {"support": plain(self.points)} | named(self, "certificate")
 
     def certificates(self) -> list[Mapping[str, Any]]:
         """The certificate in a list, for :func:`navsym.check`."""

@@ -102,7 +102,7 @@ class ContactSolution:
     """Contacts to high precision, all midpoints exact.
 
     panel, v, inner, sign : place of each contact as a fraction of its panel, whether it may move, its sign
-    weights : in the units of the problem (noise bound not divided out)
+    weights : times their noise bounds, as certificates have them
     dual    : x in the basis of the problem
     residual : size of the last correction, or what the next one would be, relative
     regular : True when the optimality system is square and far from singular
@@ -161,14 +161,13 @@ def sharpen_contacts(
             if done:  # with the ratio of the last two the next correction would be below the goal
                 break
         dual = basis.transform.transpose() * arb_mat([[a] for a in x])
-        weights = [a * basis.size / panels[k].bound() for a, k in zip(w, contacts.panel, strict=True)]
         touching = tuple((k, unit_fraction(u)) for k, u in contacts.touching)
         return ContactSolution(
             tuple(int(k) for k in contacts.panel),
             tuple(v),
             tuple(inner),
             tuple(signs),
-            tuple(a.mid() for a in weights),
+            tuple((a * basis.size).mid() for a in w),
             tuple(dual[i, 0].mid() for i in range(m)),
             float(size),
             regular,
