@@ -92,7 +92,9 @@ def rational_end(end: sp.Expr | None) -> fmpq:
     return to_fmpq(end)
 
 
-def longest_step(found: ModelFile, piece: Piece, Psi: arb_mat, at: fmpq, size: fmpq) -> tuple[TaylorStep, arb_mat, fmpq]:
+def longest_step(
+    found: ModelFile, piece: Piece, Psi: arb_mat, at: fmpq, size: fmpq
+) -> tuple[TaylorStep, arb_mat, fmpq]:
     """One step to the left of ``at``, halved until its remainder is small; Psi at its left end; the next size."""
     for _ in range(40):
         made = taylor_step(found, piece, Psi, at, size)
@@ -102,7 +104,9 @@ def longest_step(found: ModelFile, piece: Piece, Psi: arb_mat, at: fmpq, size: f
     raise DomainError(f"F: expected functions that are analytic on the interval; got a singularity near {at}")
 
 
-def taylor_step(found: ModelFile, piece: Piece, Psi: arb_mat, at: fmpq, size: fmpq) -> tuple[TaylorStep, arb_mat] | None:
+def taylor_step(
+    found: ModelFile, piece: Piece, Psi: arb_mat, at: fmpq, size: fmpq
+) -> tuple[TaylorStep, arb_mat] | None:
     """Psi on ``[at - size, at]``, or None when the remainder is too large."""
     n, h = Psi.nrows(), arb(size)
     thin = system_coefficients(found, piece, arb(at))

@@ -22,7 +22,6 @@ from navsym.core.exact import decimal, from_decimal, to_fmpq
 from navsym.guaranteed.certificate.enclosure import PanelProblem
 from navsym.guaranteed.certificate.fixed import ENDS, certificate_header
 from navsym.guaranteed.certificate.moving import EVERY, Member, MovingProblem, expand_polynomial, series_coefficient
-from navsym.guaranteed.streaming.numbers import write_rational
 
 BITS = 192
 #: Order of the series in s, the last coefficient over the whole piece; and degree of the curves.
@@ -101,7 +100,7 @@ def range_document(problem: PanelProblem, parameter: str, pieces: Sequence[Range
     room = max(abs(low), abs(high)) / ROOM
     ends = decimal(low - room, 9, -1), decimal(high + room, 9, 1)
     head = certificate_header(problem, "range", BITS, sum(p.cells for p in pieces), *ends)
-    over = {"parameter": parameter, "from": write_rational(pieces[0].lower), "to": write_rational(pieces[-1].upper)}
+    over = {"parameter": parameter, "from": str(pieces[0].lower), "to": str(pieces[-1].upper)}
     return head | over | {"pieces": [p.row for p in pieces]}
 
 
@@ -324,9 +323,9 @@ def piece_row(
         for i, (k, kind, _) in enumerate(track.pattern)
     ]
     return {
-        "from": write_rational(moving.middle - moving.half),
-        "to": write_rational(moving.middle + moving.half),
-        "basis": [[write_rational(moving.basis[i, j]) for j in range(m)] for i in range(m)],
+        "from": str(moving.middle - moving.half),
+        "to": str(moving.middle + moving.half),
+        "basis": [[str(moving.basis[i, j]) for j in range(m)] for i in range(m)],
         "dual": [text(c) for c in curves[:m]],
         "contacts": contacts,
         "radius": [decimal(to_fmpq(radius.get(k, smallest)), 12, 1) for k in range(m + 2 * l)],
