@@ -42,6 +42,7 @@ from navsym.guaranteed.streaming.flow import BITS, Flow, name_measurements
 from navsym.guaranteed.streaming.guard import whole_number
 from navsym.guaranteed.streaming.memory import Row
 from navsym.guaranteed.streaming.numbers import read_exact
+from navsym.language.expression import to_text
 from navsym.language.files import file_in_errors, name_file
 from navsym.language.names import quote, suggest_nearest
 from navsym.language.schema import as_table, expect_keys
@@ -551,7 +552,7 @@ class Market:
             "rows": rows,
             "costs": {name: str(price) for name, price in self.prices.items()},
             "budget": str(self.budget),
-            "functional": [flow.functional_text(k) for k in columns],
+            "functional": [to_text(flow.functional[k]) for k in columns],
             "support": list(found.basis),
             "duals": [[decimal(e, self.digits + 28) for e in x.entries()] for x in duals],
             "lower": lower_end(worth, self.digits + 11),

@@ -17,6 +17,7 @@ from navsym.core.numbers import Number
 from navsym.guaranteed.streaming.flow import BITS, Flow, pivot_columns
 from navsym.guaranteed.streaming.memory import Row, group_rows, list_cones
 from navsym.guaranteed.streaming.numbers import NUMBER, read_exact, to_float
+from navsym.language.expression import to_text
 from navsym.language.names import quote
 
 #: Digits of radii and duals.
@@ -312,7 +313,7 @@ def write_certificate(plan: Plan) -> dict[str, Any] | None:
             "kind": "gap",
             "variable": "place",
             "panels": panels,
-            "functional": [flow.functional_text(k) for k in plan.columns],
+            "functional": [to_text(flow.functional[k]) for k in plan.columns],
             "bits": BITS + 64,
             "cells": min(len(plan.rows) // 4 + 1, 20_000),
             "parameter": "none",

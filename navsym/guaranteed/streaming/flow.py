@@ -268,10 +268,6 @@ class Flow:
         p = self.functional[k]
         return to_fmpq(p) if p.is_Rational else None
 
-    def functional_text(self, k: int) -> str:
-        """An entry of the functional as text."""
-        return to_text(self.functional[k])
-
     @cached_property
     def system(self) -> fmpq_mat | None:
         """F of all times where it is rational; zero without dynamics."""
