@@ -208,10 +208,6 @@ class BlockEstimator(Answer):
             "certificate": dict(self.certificate),
         }
 
-    def certificates(self) -> list[Mapping[str, Any]]:
-        """The certificate in a list, for :func:`navsym.check`."""
-        return [self.certificate]
-
     def __repr__(self) -> str:
         used = sum(any(e != 0 for e in w) for w in self.weights)
         return f"BlockEstimator({quote(self.target)[1:-1]}: {self.value}, {used} of {len(self.weights)} blocks)"

@@ -132,10 +132,6 @@ class Design(Answer):
         head = named(self, "target status value bought cost")
         return head | {"support": plain(self.points)} | named(self, "certificate")
 
-    def certificates(self) -> list[Mapping[str, Any]]:
-        """The certificate in a list, for :func:`navsym.check`."""
-        return [self.certificate]
-
     def __repr__(self) -> str:
         where = ", ".join(f"{p.measurement} at {p.at}" for p in self.points)
         return f"Design({quote(self.target)[1:-1]}: {self.value}, cost {self.cost}: {where}; {self.status})"

@@ -136,10 +136,6 @@ class Estimator(Answer):
         """The JSON document of ``navsym solve``."""
         return named(self, "target status value support dual unique certificate" + " missing" * bool(self.missing))
 
-    def certificates(self) -> list[Mapping[str, Any]]:
-        """The certificate in a list, for :func:`navsym.check`."""
-        return [self.certificate]
-
     def compare(
         self, solvers: Sequence[str] | None = None, progress: Callable[[str], None] = lambda solver: None
     ) -> Comparison:

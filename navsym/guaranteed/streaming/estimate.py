@@ -171,10 +171,6 @@ class Estimate(Answer):
             return None
         return (write_cones if self.plan.flow.blocks else write_certificate)(self.plan)
 
-    def certificates(self) -> list[Mapping[str, Any]]:
-        """The certificate in a list, for :func:`navsym.check`."""
-        return [self.certificate] if self.certificate is not None else []
-
     def document(self, *, certificate: bool = True) -> dict[str, Any]:
         """The row of the epoch in the document of ``navsym guard``, with its certificate or with null in its place."""
         rest: dict[str, Any] = {"others": [list(times) for times in self.others]} if self.others else {}
