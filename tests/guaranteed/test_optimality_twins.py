@@ -24,6 +24,7 @@ from navsym.guaranteed.certificate.enclosure import (
     series_terms,
     shift_polynomial,
 )
+from navsym.guaranteed.certificate.entire import REMAINDERS
 from navsym.guaranteed.certificate.fixed import certify, solution_box, solution_unknowns
 from navsym.guaranteed.certificate.polish import sharpen_contacts
 from navsym.guaranteed.search.exchange import find_contacts
@@ -160,6 +161,20 @@ def test_a_transform_of_doubles_makes_the_functions_as_orthonormal_as_that_in_ba
 def in_balls(monkeypatch, values, bits):
     monkeypatch.setattr(basis_room, "double_transform", lambda values: None)
     return orthonormal_transform(values, bits)
+
+
+@pytest.mark.parametrize("f", [sin, cos, e])
+@pytest.mark.parametrize("k", [0, 1, 4])
+def test_a_remainder_is_its_function_without_the_first_terms_over_a_power_and_has_its_derivatives(f, k):
+    first = sum(f(t).diff(t, j).subs(t, 0) * t**j / sp.factorial(j) for j in range(k))
+    plain, entire = (f(3 * t) - first.subs(t, 3 * t) if k else f(3 * t)) / (3 * t) ** k, REMAINDERS[f](k, 3 * t)
+    for order in range(3):
+        one, other = (joint_tape([h.diff(t, order)]) for h in (plain, entire))
+        with precision(200):
+            at = {t: arb(1) / 7}
+            a, b = one.run(at)[0], other.run(at)[0]
+            assert a.overlaps(b) and abs(a - b) < 1e-30
+            assert other.run({t: arb(0)})[0].is_finite() and not entire.func(k, t).on_balls(None, arb(2)).is_finite()
 
 
 def test_pivots_that_are_known_to_few_bits_are_no_pivots():
