@@ -141,6 +141,7 @@ def power_instruction(node: sp.Pow) -> tuple[str, Sequence[sp.Basic], Any]:
 
 
 def constant_term(x: Any) -> arb:
+    """The first coefficient of a series; a ball itself."""
     return x[0] if isinstance(x, arb_series) else x
 
 
