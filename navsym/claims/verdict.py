@@ -93,10 +93,6 @@ class Verdict(Answer):
         parts = [str(self.formula or ""), self.method, found]
         return f"<{self.status}: {'; '.join(part for part in parts if part)}>"
 
-    def certificates(self) -> list[Mapping[str, Any]]:
-        """The certificate of this verdict, when it has one."""
-        return [] if self.certificate is None else [self.certificate]
-
     def document(self) -> dict[str, Any]:
         """One entry of ``claims`` in the JSON document of ``navsym prove``."""
         head = {"id": self.formula.id} if self.formula else {}

@@ -69,8 +69,9 @@ class Answer(Shown):
         return navsym.plot(self)
 
     def certificates(self) -> list[Mapping[str, Any]]:
-        """The certificates that :meth:`check` replays."""
-        return []
+        """The certificates that :meth:`check` replays: the answer's own, where it has one."""
+        own = getattr(self, "certificate", None)
+        return [] if own is None else [own]
 
 
 class Answers(Answer, Generic[Part]):

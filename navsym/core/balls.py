@@ -122,6 +122,8 @@ def read_instruction(node: sp.Basic) -> tuple[str, Sequence[sp.Basic], Any]:
         return power_instruction(node)
     if node.func in FUNCTIONS:
         return FUNCTIONS[node.func], node.args, None
+    if hasattr(node, "on_balls"):  # a function that knows its own enclosure
+        return "own", node.args, node.on_balls
     raise UnsupportedError(f"expected an expression of the language; got {node.func.__name__}; rewrite it")
 
 
@@ -139,6 +141,7 @@ def power_instruction(node: sp.Pow) -> tuple[str, Sequence[sp.Basic], Any]:
 
 
 def constant_term(x: Any) -> arb:
+    """The first coefficient of a series; a ball itself."""
     return x[0] if isinstance(x, arb_series) else x
 
 
@@ -279,6 +282,7 @@ OPERATIONS: dict[str, Callable[[Any, list[Any], Any], Any]] = {
     "atan2": lambda constant, arguments, values: two_argument_arctangent(*arguments),
     "max": lambda constant, arguments, values: extreme_of("max", arguments),
     "min": lambda constant, arguments, values: extreme_of("min", arguments),
+    "own": lambda constant, arguments, values: constant(*arguments),
 }
 OPERATIONS |= {name: unary(methodcaller(name)) for name in ("sin", "cos", "exp", "atan")}
 OPERATIONS |= {name: unary(hyperbolic(name)) for name in ("sinh", "cosh", "tanh")}

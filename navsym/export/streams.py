@@ -27,7 +27,7 @@ from navsym.export.roundtrip import MANIFEST, sealed
 from navsym.export.streaming_rule import MOST_EXCHANGES, NEAR, Group, StreamingRule
 from navsym.guaranteed.streaming.flow import BITS, Flow
 from navsym.guaranteed.streaming.guard import Guard
-from navsym.guaranteed.streaming.numbers import to_float, write_rational
+from navsym.guaranteed.streaming.numbers import to_float
 
 LANGUAGES = ("c", "cpp", "python")
 MOST_ENTRIES = 50_000
@@ -148,7 +148,7 @@ class Rule:
             "about": f"guaranteed estimate of {plain(self.guard.target)}, epoch by epoch",
             "target": plain(self.guard.target),
             "epochs": self.guard.length,
-            "step": f"{write_rational(self.pace)} in the unit of time of the model",
+            "step": f"{self.pace} in the unit of time of the model",
             "law": LAWS[self.guard.bound],
             "names": [plain(name) for name in self.flow.names],
             "size": self.flow.size,
@@ -233,9 +233,7 @@ def expect(rule: Rule, rows: list[dict[str, Any]]) -> float:
     Raises RefusedError where the twin has no bounds, or where they are far apart.
     """
     twin = rule.twin
-    guard = Guard(
-        rule.guard.model, rule.guard.target, rule.guard.bound, memory=rule.guard.length, step=write_rational(rule.pace)
-    )
+    guard = Guard(rule.guard.model, rule.guard.target, rule.guard.bound, memory=rule.guard.length, step=str(rule.pace))
     widest = 0.0
     for row in rows:
         status, _, radius, least = twin.step(row["z"], row["sigma"])

@@ -26,7 +26,7 @@ from navsym.core.numbers import Number
 from navsym.guaranteed.search.cones import Cone
 from navsym.guaranteed.streaming.exchange import Cloud, exchange
 from navsym.guaranteed.streaming.flow import in_row_space, pivot_columns
-from navsym.guaranteed.streaming.numbers import read_exact, to_float, write_rational
+from navsym.guaranteed.streaming.numbers import read_exact, to_float
 from navsym.language.names import quote
 from navsym.models.modelfile import NORMS
 
@@ -148,7 +148,7 @@ def read_bound(bound: Any, p: int, norm: str) -> fmpq_mat:
     if len(sizes) != p:
         raise ShapeError(f"expected {p} numbers, one a measurement; got {len(sizes)}; complete them", where=where)
     if min(sizes) <= 0:
-        raise DomainError(f"expected positive bounds; got {write_rational(min(sizes))}; mend it", where=where)
+        raise DomainError(f"expected positive bounds; got {min(sizes)}; mend it", where=where)
     if norm != "l2":
         return fmpq_mat(p, 1, sizes)
     return fmpq_mat(p, p, [s * s if i == j else fmpq(0) for i, s in enumerate(sizes) for j in range(p)])
@@ -207,10 +207,6 @@ class BlockEstimator(Answer):
             "shares": list(self.shares),
             "certificate": dict(self.certificate),
         }
-
-    def certificates(self) -> list[Mapping[str, Any]]:
-        """The certificate in a list, for :func:`navsym.check`."""
-        return [self.certificate]
 
     def __repr__(self) -> str:
         used = sum(any(e != 0 for e in w) for w in self.weights)
@@ -473,7 +469,7 @@ def write_certificate(
     parts: Sequence[Part], functional: fmpq_mat, weights: Sequence[Sequence[fmpq]], dual: Sequence[fmpq], value: Number
 ) -> dict[str, Any]:
     """The certificate of kind cones."""
-    text = lambda numbers: [write_rational(e) for e in numbers]  # noqa: E731
+    text = lambda numbers: [str(e) for e in numbers]  # noqa: E731
     blocks = [
         {
             "H": [text(row) for row in part.H.tolist()],

@@ -21,7 +21,7 @@ from flint import arb, arb_mat, fmpq, fmpq_mat
 
 from navsym.claims import CERTIFIED, OPEN, Status
 from navsym.claims.display import write_card, write_table
-from navsym.core.answers import Answer
+from navsym.core.answers import Answer, named, plain
 from navsym.core.balls import precision
 from navsym.core.errors import (
     DomainError,
@@ -41,7 +41,8 @@ from navsym.guaranteed.streaming.exchange import Cloud, Optimum, bounds_of, exch
 from navsym.guaranteed.streaming.flow import BITS, Flow, name_measurements
 from navsym.guaranteed.streaming.guard import whole_number
 from navsym.guaranteed.streaming.memory import Row
-from navsym.guaranteed.streaming.numbers import middle, read_exact, write_rational
+from navsym.guaranteed.streaming.numbers import read_exact
+from navsym.language.expression import to_text
 from navsym.language.files import file_in_errors, name_file
 from navsym.language.names import quote, suggest_nearest
 from navsym.language.schema import as_table, expect_keys
@@ -128,14 +129,8 @@ class Design(Answer):
 
     def document(self) -> dict[str, Any]:
         """The JSON document of ``navsym solve --design``."""
-        points = [{name: getattr(p, name) for name in DesignPoint.__slots__} for p in self.points]
-        head = {"target": self.target, "status": str(self.status), "value": self.value.document()}
-        rest = {"bought": list(self.bought), "cost": self.cost, "support": points}
-        return head | rest | {"certificate": dict(self.certificate)}
-
-    def certificates(self) -> list[Mapping[str, Any]]:
-        """The certificate in a list, for :func:`navsym.check`."""
-        return [self.certificate]
+        head = named(self, "target status value bought cost")
+        return head | {"support": plain(self.points)} | named(self, "certificate")
 
     def __repr__(self) -> str:
         where = ", ".join(f"{p.measurement} at {p.at}" for p in self.points)
@@ -240,7 +235,7 @@ def read_offers(
             own = None if grades is not offer else read_exact(grade[0], where)
             if own is not None and own <= 0:
                 raise DomainError(f"expected a positive noise bound; got {quote(grade[0])}; correct it", where=where)
-            item = name if own is None else f"{name} {write_rational(own)}"
+            item = name if own is None else f"{name} {own}"
             if item in prices:
                 message = f"expected different noise bounds; got {quote(grade[0])} twice; keep the cheaper grade"
                 raise DuplicateError(message, where=where)
@@ -282,9 +277,9 @@ def list_candidates(
     at = sorted(read_exact(t, "design: times") for t in times)
     twice = next((a for a, b in pairwise(at) if a == b), None)
     if twice is not None:
-        message = f"expected different times; got {write_rational(twice)} twice; drop one, or add a sensor for two"
+        message = f"expected different times; got {twice} twice; drop one, or add a sensor for two"
         raise DuplicateError(message, where="design: times")
-    prices = {f"t = {write_rational(t)}": read_exact(instant, "design: instant") for t in at} | dict(sensors)
+    prices = {f"t = {t}": read_exact(instant, "design: instant") for t in at} | dict(sensors)
     negative = [name for name, price in prices.items() if price < 0]
     if negative or not at or not offers:
         got = f"a negative one of {quote(negative[0])}" if negative else "no instants or no sensors"
@@ -295,9 +290,9 @@ def list_candidates(
     rows, needs = [], []
     for t in at:
         for j, items, own in offers:
-            sigma, text = flow.sigma(j, t) if own is None else (arb(own), write_rational(own))
+            sigma, text = flow.sigma(j, t) if own is None else (arb(own), str(own))
             rows.append(Row(t, j, fmpq(0), sigma, text, own))
-            needs.append(items | {f"t = {write_rational(t)}"})
+            needs.append(items | {f"t = {t}"})
     return rows, needs, prices
 
 
@@ -338,12 +333,12 @@ class Market:
     def make_cloud(self, far: int) -> Cloud:
         """The rows and the unit vectors as the exchange takes them."""
         lines, bounds = self.table.tolist(), [row.sigma for row in self.rows]
-        reach = np.linalg.pinv([[middle(e / s) for e in v] for v, s in zip(lines, bounds, strict=True)])
+        reach = np.linalg.pinv([[float(e / s) for e in v] for v, s in zip(lines, bounds, strict=True)])
         bounds += [arb(far) * max(r, 1e-6) for r in np.abs(reach).sum(axis=1)]
         lines += [list(map(arb, line)) for line in self.units]
         balls = [[e / s for e in v] for v, s in zip(lines, bounds, strict=True)]
         wide = max(float(e.rad()) for v in balls for e in v)
-        return Cloud([arb_mat([v]) for v in lines], bounds, np.array([list(map(middle, v)) for v in balls]), wide=wide)
+        return Cloud([arb_mat([v]) for v in lines], bounds, np.array([list(map(float, v)) for v in balls]), wide=wide)
 
     def price(self, items: int) -> fmpq:
         """What things cost together; one bit for each."""
@@ -442,7 +437,7 @@ class Market:
         while True:
             rows = {i for i, n in enumerate(self.bits) if not n & ~bought}
             found = self.optimum(rows)
-            sizes = np.abs(self.cloud.scaled[: len(self.rows)] @ [middle(e) for e in found.dual.entries()])
+            sizes = np.abs(self.cloud.scaled[: len(self.rows)] @ [float(e) for e in found.dual.entries()])
             wanted = (bought | self.bits[i] for i in np.argsort(-sizes) if sizes[i] > 1 + 1e-9 and i not in rows)
             larger = next((items for items in wanted if self.price(items) <= self.budget), None)
             if larger is None:
@@ -460,9 +455,9 @@ class Market:
 
     def refute(self, rows: set[int], found: Optimum) -> Optimum:
         """A dual that is worth the goal and fails at few rows: in doubles they are allowed one by one while it is."""
-        goal, n = middle(self.goal), len(self.rows)
-        basis, signs, worth = found.basis, found.signs, middle(bounds_of(self.cloud, found)[0])
-        x = np.array([middle(e) for e in found.dual.entries()])
+        goal, n = float(self.goal), len(self.rows)
+        basis, signs, worth = found.basis, found.signs, float(bounds_of(self.cloud, found)[0])
+        x = np.array([float(e) for e in found.dual.entries()])
         active, P = self.mask(rows), to_doubles(self.target)
         cloud = replace(self.cloud, active=active)
         for i in self.random.permutation(n):
@@ -483,7 +478,7 @@ class Market:
         """The best selection with its certificate; ``done`` is what the search said."""
         pairs = self.weigh(self.best) if self.best else None
         if self.best is None or pairs is None:
-            got = f"none with an error below {middle(self.least):.3g}" if done else "none in so many steps"
+            got = f"none with an error below {float(self.least):.3g}" if done else "none in so many steps"
             message = f"expected a selection within the budget that shows {quote(self.flow.target)}; got {got}"
             raise NotEstimableError(f"{message}; raise the budget or add instants", where="design")
         cost, found = self.least, self.best
@@ -494,12 +489,12 @@ class Market:
         certificate = self.write_certificate(found, duals, cost)
         value = Number(certificate["lower"], certificate["upper"])
         rows = [i for i, n in enumerate(self.bits) if not n & ~bought]
-        lines = np.array([[middle(e) for e in self.table.tolist()[i]] for i in rows])
+        lines = np.array([[float(e) for e in self.table.tolist()[i]] for i in rows])
         turn = np.linalg.svd(lines, full_matrices=False)[2][: np.linalg.matrix_rank(lines)]  # what these rows show
-        grid = GridProblem(turn @ lines.T, turn @ to_doubles(self.target), [middle(self.rows[i].sigma) for i in rows])
+        grid = GridProblem(turn @ lines.T, turn @ to_doubles(self.target), [float(self.rows[i].sigma) for i in rows])
         words = tuple(name for k, name in enumerate(self.names) if bought >> k & 1)
         status = CERTIFIED if done else OPEN
-        price = write_rational(self.price(bought))
+        price = str(self.price(bought))
         return Design(self.flow.target, value, words, price, points, status, certificate, grid)
 
     def drop_idle(self) -> list[arb_mat]:
@@ -524,11 +519,9 @@ class Market:
         for i, w in used:
             row, slope = self.rows[i], None
             if len(used) == self.m:
-                slope = middle(
-                    -w * ((self.row_at(row.j, row.t + STEP) - self.row_at(row.j, row.t)) * dual)[0, 0] / STEP
-                )
-            share, name = middle(row.sigma * abs(w) / cost), self.flow.names[row.j]
-            points.append(DesignPoint(write_rational(row.t), name, row.text, middle(w), share, slope))
+                slope = float(-w * ((self.row_at(row.j, row.t + STEP) - self.row_at(row.j, row.t)) * dual)[0, 0] / STEP)
+            share, name = float(row.sigma * abs(w) / cost), self.flow.names[row.j]
+            points.append(DesignPoint(str(row.t), name, row.text, float(w), share, slope))
         return tuple(points)
 
     def row_at(self, j: int, t: fmpq) -> arb_mat:
@@ -542,20 +535,20 @@ class Market:
         """The certificate of kind design."""
         flow, columns, rows = self.flow, self.flow.columns, []
         for row, numbers, needs in zip(self.rows, self.exact, self.needs, strict=True):
-            texts = flow.row_text(row.j, row.t, self.now) if numbers is None else [write_rational(e) for e in numbers]
+            texts = flow.row_text(row.j, row.t, self.now) if numbers is None else [str(e) for e in numbers]
             if texts is None:
                 message = "expected an F whose exp(F t) has a formula; got another; simplify F"
                 raise DomainError(message, where="design: model")
             rows.append({"H": [texts[k] for k in columns], "sigma": row.text, "needs": sorted(needs)})
-        worth = min(((self.target * x)[0, 0] for x in duals), key=middle)
+        worth = min(((self.target * x)[0, 0] for x in duals), key=float)
         nodes = count()
         self.buy([self.refused(x) for x in duals], self.free, nodes)
         return {
             "kind": "design",
             "rows": rows,
-            "costs": {name: write_rational(price) for name, price in self.prices.items()},
-            "budget": write_rational(self.budget),
-            "functional": [flow.functional_text(k) for k in columns],
+            "costs": {name: str(price) for name, price in self.prices.items()},
+            "budget": str(self.budget),
+            "functional": [to_text(flow.functional[k]) for k in columns],
             "support": list(found.basis),
             "duals": [[decimal(e, self.digits + 28) for e in x.entries()] for x in duals],
             "lower": lower_end(worth, self.digits + 11),

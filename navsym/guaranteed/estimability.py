@@ -42,15 +42,17 @@ MOST_PARTS = 400
 
 
 @dataclass(frozen=True, slots=True)
-class UnobservableDirection:
-    """A state at T whose motion no measurement shows; the entry ``at`` is one."""
+class NullDirection:
+    """A direction of the unknowns that no measurement shows; the entry ``at`` is one, and its unknown is dropped."""
 
     entries: tuple[sp.Expr, ...]
     at: int
 
 
-def unobservable_directions(found: ModelFile) -> list[UnobservableDirection]:
-    """Independent directions, exact; empty where none is proved. No two have an entry at each other's place.
+def unobservable_directions(found: ModelFile) -> list[NullDirection]:
+    """Independent directions of states at T, exact; empty where none is proved.
+
+    No two have an entry at each other's place.
 
     h and F must be analytic on every piece. Where two pieces meet, the columns of the later one must lie among those
     of the earlier one: ``x = N c`` goes on to the start of a piece, as N is meromorphic beside the interval.
@@ -58,7 +60,7 @@ def unobservable_directions(found: ModelFile) -> list[UnobservableDirection]:
     T, after = found.T, None
     if T is None or not T.is_Rational:
         return []
-    directions: list[UnobservableDirection] = []
+    directions: list[NullDirection] = []
     try:
         for piece in reversed(found.pieces):
             end = T if piece.end is None else piece.end
@@ -68,7 +70,7 @@ def unobservable_directions(found: ModelFile) -> list[UnobservableDirection]:
             N, free = part
             at_end = N.subs(found.time, end)
             if after is None:
-                directions = [UnobservableDirection(tuple(at_end[:, k]), j) for k, j in enumerate(free)]
+                directions = [NullDirection(tuple(at_end[:, k]), j) for k, j in enumerate(free)]
             elif not is_zero_matrix(after - at_end * after.extract(free, list(range(after.cols)))):
                 return []
             after = N.subs(found.time, piece.start)
@@ -184,14 +186,6 @@ DECIDING = 1200
 Relation = dict[int, sp.Expr]
 
 
-@dataclass(frozen=True, slots=True)
-class NullDirection:
-    """Entries of a direction that no measurement shows, and the unknown that is dropped for it."""
-
-    entries: Relation
-    at: int
-
-
 def drop_dependent(problem: GuaranteedProblem, kept: list[int], index: int, coefficients: Sequence[arb]) -> None:
     """Remove an unknown: ``kept[index]``, whose regressor is about this combination of those before it, or another.
 
@@ -199,15 +193,15 @@ def drop_dependent(problem: GuaranteedProblem, kept: list[int], index: int, coef
     kind ``"open"`` where neither this nor the relation can be proved.
     """
     k, balls = kept[index], dict(zip(kept, coefficients, strict=False))
-    direction = integrated_direction(problem.model, kept) if problem.model else exact_direction(problem, k, balls)
+    found = unobservable_directions(problem.model) if problem.model else exact_directions(problem, k, balls)
+    direction = next((one for one in found if one.at in kept), None)
     if direction is None:
         raise undecided_error(problem, k, balls)
-    change = sum((c * problem.functional[j] for j, c in direction.entries.items()), sp.S.Zero)
+    change = sum((c * p for c, p in zip(direction.entries, problem.functional, strict=True)), sp.S.Zero)
     if not is_equal(change, sp.S.Zero):
         if enclose(change, bits=DECIDING).contains(0):
             raise undecided_error(problem, k, balls)
-        entries = [direction.entries.get(j, sp.S.Zero) for j in range(len(problem.functional))]
-        words = ", ".join(t if len(t := to_text(c)) <= LETTERS else decimal(enclose(c), 15) for c in entries)
+        words = ", ".join(t if len(t := to_text(c)) <= LETTERS else decimal(enclose(c), 15) for c in direction.entries)
         raise NotEstimableError(
             f"functional: expected one that the measurements determine; got one that changes along the null "
             f"direction [{words}] which no measurement shows; estimate another combination"
@@ -215,20 +209,15 @@ def drop_dependent(problem: GuaranteedProblem, kept: list[int], index: int, coef
     kept.remove(direction.at)
 
 
-def exact_direction(problem: GuaranteedProblem, k: int, balls: dict[int, arb]) -> NullDirection | None:
-    """Exact c with ``H_k = sum c_j H_j`` on all measurements at all times, as a direction; None without a proof."""
+def exact_directions(problem: GuaranteedProblem, k: int, balls: dict[int, arb]) -> list[NullDirection]:
+    """Exact c with ``H_k = sum c_j H_j`` on all measurements at all times, as a direction; none without a proof."""
     involved = [j for j, c in balls.items() if not abs(c) < TINY]
     near = {j: c for j in involved if (c := recognised(balls[j])) is not None}
     relation = near if len(near) == len(involved) else solve_at_times(problem, k, involved)
     if relation is None or not is_relation_proved(problem, k, relation):
-        return None
-    return NullDirection({j: -c for j, c in relation.items()} | {k: sp.S.One}, k)
-
-
-def integrated_direction(model: ModelFile, kept: Sequence[int]) -> NullDirection | None:
-    """A direction of an integrated model, proved from F and h, whose own unknown is left."""
-    known = (d for d in unobservable_directions(model) if d.at in kept)
-    return next((NullDirection({j: c for j, c in enumerate(d.entries) if c != 0}, d.at) for d in known), None)
+        return []
+    entries = {j: -c for j, c in relation.items()} | {k: sp.S.One}
+    return [NullDirection(tuple(entries.get(j, sp.S.Zero) for j in range(len(problem.functional))), k)]
 
 
 def undecided_error(problem: GuaranteedProblem, k: int, balls: dict[int, arb]) -> NavsymError:

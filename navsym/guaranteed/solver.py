@@ -18,7 +18,7 @@ from flint import arb
 
 from navsym.claims import CERTIFIED, OPEN, Status
 from navsym.claims.display import mark_verdict, shorten_digits, write_card, write_table
-from navsym.core.answers import Answer
+from navsym.core.answers import Answer, named
 from navsym.core.balls import precision
 from navsym.core.errors import DomainError
 from navsym.core.exact import decimal
@@ -134,19 +134,7 @@ class Estimator(Answer):
 
     def document(self) -> dict[str, Any]:
         """The JSON document of ``navsym solve``."""
-        return {
-            "target": self.target,
-            "status": str(self.status),
-            "value": self.value.document(),
-            "support": [point.document() for point in self.support],
-            "dual": list(self.dual),
-            "unique": self.unique,
-            "certificate": dict(self.certificate),
-        } | ({"missing": self.missing} if self.missing else {})
-
-    def certificates(self) -> list[Mapping[str, Any]]:
-        """The certificate in a list, for :func:`navsym.check`."""
-        return [self.certificate]
+        return named(self, "target status value support dual unique certificate" + " missing" * bool(self.missing))
 
     def compare(
         self, solvers: Sequence[str] | None = None, progress: Callable[[str], None] = lambda solver: None

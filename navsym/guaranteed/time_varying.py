@@ -33,7 +33,6 @@ DIGITS = 60
 #: A step is halved until its remainder is below this.
 WANTED = arb(10) ** -45
 MOST_STEPS = 60
-Matrix = list[list[arb]]
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -69,7 +68,7 @@ def integrate_steps(found: ModelFile) -> list[TaylorStep]:
     done: list[TaylorStep] = []
     n = len(found.states)
     with precision(BITS):
-        Psi = [[arb(int(i == j)) for j in range(n)] for i in range(n)]
+        Psi = arb_mat([[int(i == j) for j in range(n)] for i in range(n)])
         for piece in reversed(found.pieces):
             end = found.T if piece.end is None else piece.end
             at, last = rational_end(end), rational_end(piece.start)
@@ -93,7 +92,9 @@ def rational_end(end: sp.Expr | None) -> fmpq:
     return to_fmpq(end)
 
 
-def longest_step(found: ModelFile, piece: Piece, Psi: Matrix, at: fmpq, size: fmpq) -> tuple[TaylorStep, Matrix, fmpq]:
+def longest_step(
+    found: ModelFile, piece: Piece, Psi: arb_mat, at: fmpq, size: fmpq
+) -> tuple[TaylorStep, arb_mat, fmpq]:
     """One step to the left of ``at``, halved until its remainder is small; Psi at its left end; the next size."""
     for _ in range(40):
         made = taylor_step(found, piece, Psi, at, size)
@@ -103,59 +104,55 @@ def longest_step(found: ModelFile, piece: Piece, Psi: Matrix, at: fmpq, size: fm
     raise DomainError(f"F: expected functions that are analytic on the interval; got a singularity near {at}")
 
 
-def taylor_step(found: ModelFile, piece: Piece, Psi: Matrix, at: fmpq, size: fmpq) -> tuple[TaylorStep, Matrix] | None:
+def taylor_step(
+    found: ModelFile, piece: Piece, Psi: arb_mat, at: fmpq, size: fmpq
+) -> tuple[TaylorStep, arb_mat] | None:
     """Psi on ``[at - size, at]``, or None when the remainder is too large."""
-    n, h = len(Psi), arb(size)
+    n, h = Psi.nrows(), arb(size)
     thin = system_coefficients(found, piece, arb(at))
     wide = system_coefficients(found, piece, interval_ball(at - size, at))
-    bound = row_norm([[f[0] for f in row] for row in wide])
+    bound = row_norm(wide[0])
     growth = (bound * h).exp() * row_norm(Psi)
     if not growth.is_finite() or bool(bound * h > 8):
         return None
-    box = arb(0, growth.upper())
-    last = solution_coefficients(wide, [[box] * n for _ in range(n)])[-1]
+    last = solution_coefficients(wide, arb_mat(n, n, [arb(0, growth.upper())] * n**2))[-1]
     rest = row_norm(last) * h**ORDER
     if not bool(rest < WANTED * row_norm(Psi)):
         return None
-    parts = solution_coefficients(thin, Psi)[:-1]
-    polynomials = [[[from_decimal(decimal(part[i][j], DIGITS)) for part in parts] for j in range(n)] for i in range(n)]
-    after = [[arb(0)] * n for _ in range(n)]
-    error = arb(0)
-    for i in range(n):
-        for j in range(n):
-            terms_ = enumerate(zip(parts, polynomials[i][j], strict=True))
-            away = sum((abs(part[i][j] - arb(c)) * h**k for k, (part, c) in terms_), arb(0))
-            error = largest_upper_end([error, away + rest])
-            value = sum((part[i][j] * h**k for k, part in enumerate(parts)), arb(0))
-            after[i][j] = value + arb(0, rest.upper())
-    return TaylorStep(at - size, at, polynomials, error), after
+    parts = [part.entries() for part in solution_coefficients(thin, Psi)[:-1]]
+    columns = list(zip(*parts, strict=True))  # the coefficients of every entry
+    rounded = [[from_decimal(decimal(c, DIGITS)) for c in column] for column in columns]
+    away = [
+        sum((abs(c - arb(q)) * h**k for k, (c, q) in enumerate(zip(column, row, strict=True))), rest)
+        for column, row in zip(columns, rounded, strict=True)
+    ]
+    ends = [sum((c * h**k for k, c in enumerate(column)), arb(0, rest.upper())) for column in columns]
+    polynomials = [rounded[i * n : (i + 1) * n] for i in range(n)]
+    return TaylorStep(at - size, at, polynomials, largest_upper_end(away)), arb_mat(n, n, ends)
 
 
-def system_coefficients(found: ModelFile, piece: Piece, at: arb) -> list[list[list[arb]]]:
+def system_coefficients(found: ModelFile, piece: Piece, at: arb) -> list[arb_mat]:
     """Taylor coefficients of F in ``s``, ``t = at - s``; with a ball for every place in it."""
     n = len(found.states)
     with series_terms(ORDER + 1):
         entries = joint_tape(list(piece.F)).run({found.time: arb_series([at, arb(-1)])})
-        flat = [[series_coefficient(f, k) for k in range(ORDER + 1)] for f in entries]
-    return [flat[i * n : (i + 1) * n] for i in range(n)]
+        return [arb_mat(n, n, [series_coefficient(f, k) for f in entries]) for k in range(ORDER + 1)]
 
 
-def solution_coefficients(F: list[list[list[arb]]], Psi: Matrix) -> list[Matrix]:
+def solution_coefficients(F: Sequence[arb_mat], Psi: arb_mat) -> list[arb_mat]:
     """Taylor coefficients 0 … ORDER of Psi in s."""
-    n = len(Psi)
-    slices = [arb_mat([[F[i][j][k] for j in range(n)] for i in range(n)]) for k in range(ORDER + 1)]
-    done = [arb_mat(Psi)]
+    done = [Psi]
     for k in range(ORDER):
-        total = slices[0] * done[k]
+        total = F[0] * done[k]
         for i in range(1, k + 1):
-            total = total + slices[i] * done[k - i]
+            total = total + F[i] * done[k - i]
         done.append(total * (arb(-1) / (k + 1)))
-    return [part.tolist() for part in done]
+    return done
 
 
-def row_norm(A: Matrix) -> arb:
+def row_norm(A: arb_mat) -> arb:
     """Largest sum of moduli of a row."""
-    return largest_upper_end([sum((abs(a).upper() for a in row), arb(0)) for row in A])
+    return largest_upper_end([sum((abs(a).upper() for a in row), arb(0)) for row in A.tolist()])
 
 
 def largest_upper_end(values: Sequence[arb]) -> arb:

@@ -7,7 +7,7 @@ from functools import partial
 
 import pytest
 import sympy as sp
-from flint import arb, arb_mat, arb_series, fmpq
+from flint import arb, arb_series, fmpq
 
 from navsym.core.balls import OPERATIONS, precision
 from navsym.guaranteed.certificate import basis as basis_room
@@ -24,8 +24,9 @@ from navsym.guaranteed.certificate.enclosure import (
     series_terms,
     shift_polynomial,
 )
+from navsym.guaranteed.certificate.entire import REMAINDERS
 from navsym.guaranteed.certificate.fixed import certify, solution_box, solution_unknowns
-from navsym.guaranteed.certificate.polish import expand_locally, sharpen_contacts
+from navsym.guaranteed.certificate.polish import sharpen_contacts
 from navsym.guaranteed.search.exchange import find_contacts
 
 t = sp.Symbol("t", real=True)
@@ -162,19 +163,18 @@ def in_balls(monkeypatch, values, bits):
     return orthonormal_transform(values, bits)
 
 
-@pytest.mark.parametrize("case", FULL)
-def test_polynomials_about_contacts_give_the_sums_that_new_expansions_give(case):
-    made, found = polished(FULL[case])
-    with precision(256):
-        start = [arb(float(v)) for v in found.v]
-        about = expand_locally(made.panels, found.panel, start, found.inner, arb(10) ** -40)
-        anew = expand_locally(made.panels, found.panel, found.v, found.inner, arb(10) ** -40)
-        assert about.reaches(found.v, arb(10) ** -30)
-        dual = arb_mat([[c] for c in found.dual])
-        for a, b in zip(about.sums(dual, found.v), anew.sums(dual, found.v), strict=True):
-            assert all(abs(x - y) < 1e-30 for x, y in zip(a, b, strict=True))
-        near, exact = about.balance(found.weights, found.v), anew.balance(found.weights, found.v)
-        assert all(abs(x - y) < 1e-28 for x, y in zip(near.entries(), exact.entries(), strict=True))
+@pytest.mark.parametrize("f", [sin, cos, e])
+@pytest.mark.parametrize("k", [0, 1, 4])
+def test_a_remainder_is_its_function_without_the_first_terms_over_a_power_and_has_its_derivatives(f, k):
+    first = sum(f(t).diff(t, j).subs(t, 0) * t**j / sp.factorial(j) for j in range(k))
+    plain, entire = (f(3 * t) - first.subs(t, 3 * t) if k else f(3 * t)) / (3 * t) ** k, REMAINDERS[f](k, 3 * t)
+    for order in range(3):
+        one, other = (joint_tape([h.diff(t, order)]) for h in (plain, entire))
+        with precision(200):
+            at = {t: arb(1) / 7}
+            a, b = one.run(at)[0], other.run(at)[0]
+            assert a.overlaps(b) and abs(a - b) < 1e-30
+            assert other.run({t: arb(0)})[0].is_finite() and not entire.func(k, t).on_balls(None, arb(2)).is_finite()
 
 
 def test_pivots_that_are_known_to_few_bits_are_no_pivots():

@@ -26,6 +26,7 @@ from navsym.guaranteed.certificate.enclosure import (
     dot_product,
     prove_panel_bound,
 )
+from navsym.guaranteed.certificate.entire import write_entire
 from navsym.guaranteed.certificate.polish import ContactSolution, pin_dual, sharpen_contacts
 from navsym.guaranteed.search.exchange import (
     Contacts,
@@ -196,22 +197,22 @@ def certify_touch(
             return None
         value = dot_product(z[:m], problem.target())
         lower, upper = lower_end(value, digits + 4), upper_end(value, digits + 4)
-        costs, radii = (weights_as_costs(problem, found, *a) for a in ((middles, places + loss + 8), (spread, 3, 1)))
         at, first = put_ends(found, middles, [ENDS.get(end, "") for end in end_names(found)]), len(z) - len(found.v)
         # A place at an end is an unknown for the checker, too, with an equation of its own.
-        wide = put_ends(found, radii, [min(radii, key=from_decimal)] * len(found.v))
+        wide = put_ends(found, spread, [min(spread, key=from_decimal)] * len(found.v))
         solution = {
             "from": "0",
             "to": "0",
             "basis": [[str(int(i == j)) for i in range(m)] for j in range(m)],
             "dual": [[c] for c in middles[:m]],
             "contacts": [
-                {"panel": k, "at": [v], "weight": [w]} for k, v, w in zip(found.panel, at, costs[first:], strict=True)
+                {"panel": k, "at": [v], "weight": [w]} for k, v, w in zip(found.panel, at, middles[first:], strict=True)
             ],
-            "radius": [*radii[:m], *wide, *radii[first:]],
+            "radius": [*spread[:m], *wide, *spread[first:]],
         }
         document = certificate_header(problem, "touch", bits, cells, lower, upper) | {"pieces": [solution]}
-        support = tuple(zip(found.panel, put_ends(found, z, found.v), z[first:], strict=True))
+        weights = [w / problem.panels[k].bound() for k, w in zip(found.panel, z[first:], strict=True)]
+        support = tuple(zip(found.panel, put_ends(found, z, found.v), weights, strict=True))
         return CertifiedOptimum(from_decimal(lower), from_decimal(upper), support, tuple(z[:m]), True, document)
 
 
@@ -252,7 +253,7 @@ def solution_box(
 
 
 def optimality_system(problem: PanelProblem, found: ContactSolution, z: Sequence[arb]) -> tuple[list[arb], arb_mat]:
-    """F and F' of the optimality system over balls: ``f(v_i) - s_i sigma``, ``f'(v_i)``, ``sum w_i H - P``."""
+    """F and F' of the optimality system over balls: ``f(v_i) - s_i sigma``, ``f'(v_i)``, ``sum w_i H/sigma - P``."""
     m, l = len(found.dual), len(found.v)
     x, w = z[:m], z[len(z) - l :]
     free = iter(range(m, len(z) - l))
@@ -264,20 +265,20 @@ def optimality_system(problem: PanelProblem, found: ContactSolution, z: Sequence
         panel = problem.panels[k]
         column = next(free) if found.inner[i] else None
         at = found.v[i] if column is None else z[column]
-        H = panel.series(at, arb(1), 2)
-        f = combine_series(x, H)
-        F[i] = f[0] - found.sign[i] * panel.bound()
+        H, bound = panel.series(at, arb(1), 2), panel.bound()
+        f, share = combine_series(x, H), w[i] / bound
+        F[i] = f[0] - found.sign[i] * bound
         J[i][:m] = [h[0] for h in H]
         for j, h in enumerate(H):
-            F[size - m + j] += w[i] * h[0]
-            J[size - m + j][size - l + i] = h[0]
+            F[size - m + j] += share * h[0]
+            J[size - m + j][size - l + i] = h[0] / bound
         if column is not None:
             F[row] = f[1]
             J[i][column] = f[1]
             J[row][:m] = [h[1] for h in H]
             J[row][column] = 2 * f[2]
             for j, h in enumerate(H):
-                J[size - m + j][column] = w[i] * h[1]
+                J[size - m + j][column] = share * h[1]
             row += 1
     return F, arb_mat(J)
 
@@ -318,21 +319,6 @@ def prove_all_panels(
             return None
         cells += used
     return cells
-
-
-def weights_as_costs(
-    problem: PanelProblem, found: ContactSolution, values: Sequence[str], digits: int, direction: int = 0
-) -> list[str]:
-    """The weights at the end of the unknowns times their sigma: what a certificate holds."""
-    head = len(values) - len(found.panel)
-    panels = [problem.panels[k] for k in found.panel]
-    return [
-        *values[:head],
-        *(
-            w if panel.sigma == 1 else decimal(to_fmpq(panel.bound() * arb(from_decimal(w))), digits, direction)
-            for panel, w in zip(panels, values[head:], strict=True)
-        ),
-    ]
 
 
 def put_ends(found: ContactSolution, z: Sequence[Any], ends: Sequence[Any]) -> list[Any]:
@@ -493,5 +479,5 @@ def panel_row(panel: Panel) -> dict[str, Any]:
         "from": to_text(panel.start),
         "to": to_text(panel.end),
         "sigma": to_text(panel.sigma),
-        "H": [to_text(h) for h in panel.functions],
+        "H": [write_entire(h) for h in panel.functions],
     }

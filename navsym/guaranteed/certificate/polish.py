@@ -20,74 +20,14 @@ from navsym.guaranteed.certificate.enclosure import Panel, PanelProblem
 from navsym.guaranteed.search.exchange import Contacts, pin_rows
 from navsym.guaranteed.search.kernels import contact_system
 
-# Taylor coefficients of the regressors about several places at once, and polynomials made of them.
-#
-# Newton's method moves the contacts by less and less, the first time by what a double number lacks. The functions
-# are expanded once; at moved contacts the system needs sums of a few terms.
 
-
-#: Terms of a polynomial, and how far contacts in double precision are expected to move.
-MOST_TERMS, MOVE = 9, 12
-
-
-def series_rows(
-    panels: Sequence[Panel], places: Sequence[int], v: Sequence[arb], inner: Sequence[bool], order: int
-) -> list[arb_mat]:
-    """Taylor coefficients 0 … order of H in the fraction at the places, (l, m) each; zeros beyond the first at ends.
-
-    With balls for v they hold for every centre in them.
-    """
-    rows: list[list[list[arb]]] = [[] for _ in range(order + 1)]
-    for k, at, free in zip(places, v, inner, strict=True):
-        series = panels[k].series(at, arb(1), order if free else 0)
-        still = [arb(0)] * len(series)
-        for d, row in enumerate(rows):
-            row.append([h[d] for h in series] if free or d == 0 else still)
-    return [arb_mat(row) for row in rows]
-
-
-@dataclass(frozen=True, slots=True, eq=False)
-class LocalExpansion:
-    """H about the places ``at``: ``H_j(at_i + s) = sum_k rows[k][i, j] s**k`` up to terms that are left out."""
-
-    at: tuple[arb, ...]
-    rows: tuple[arb_mat, ...]
-
-    def reaches(self, v: Sequence[arb], goal: arb) -> bool:
-        """What is left out of slopes at the places v is below the goal, as far as the last term tells."""
-        far = max((abs(a - b) for a, b in zip(v, self.at, strict=True)), default=arb(0))
-        largest = max(map(arb.abs_upper, self.rows[-1].entries()))
-        return far == 0 or bool(len(self.rows) * far ** (len(self.rows) - 1) * max(largest, arb(1)) < goal)
-
-    def sums(self, dual: arb_mat, v: Sequence[arb]) -> tuple[list[arb], list[arb]]:
-        """``x . H`` and its slope with respect to the fraction, at every place."""
-        c = [(row * dual).entries() for row in self.rows]
-        values, slopes = c[-1], [arb(0)] * len(v)
-        moves = [a - b for a, b in zip(v, self.at, strict=True)]
-        for row in reversed(c[:-1]):
-            slopes = [s * d + f for s, d, f in zip(slopes, moves, values, strict=True)]
-            values = [f * d + a for f, d, a in zip(values, moves, row, strict=True)]
-        return values, slopes
-
-    def balance(self, w: Sequence[arb], v: Sequence[arb]) -> arb_mat:
-        """``sum w_i H(v_i)`` as a column."""
-        moves = [a - b for a, b in zip(v, self.at, strict=True)]
-        share, done = list(w), None
-        for row in self.rows:
-            part = row.transpose() * arb_mat([[s] for s in share])
-            done = part if done is None else done + part
-            share = [s * d for s, d in zip(share, moves, strict=True)]
-        assert done is not None
-        return done
-
-
-def expand_locally(
-    panels: Sequence[Panel], places: Sequence[int], v: Sequence[arb], inner: Sequence[bool], goal: arb
-) -> LocalExpansion:
-    """H about the places v with as many terms as reach the goal, or the most."""
-    digits = -float(goal.log() / arb(10).log())
-    order = min(MOST_TERMS - 1, max(2, int(digits / MOVE) + 1))
-    return LocalExpansion(tuple(v), tuple(series_rows(panels, places, v, inner, order)))
+def contact_rows(
+    panels: Sequence[Panel], places: Sequence[int], v: Sequence[arb], inner: Sequence[bool]
+) -> tuple[arb_mat, arb_mat]:
+    """H and its slopes with respect to the fraction at the places, (l, m) each; slopes of zero at ends."""
+    series = [panels[k].series(at, arb(1), int(free)) for k, at, free in zip(places, v, inner, strict=True)]
+    slopes = [[h[1] if free else arb(0) for h in row] for row, free in zip(series, inner, strict=True)]
+    return arb_mat([[h[0] for h in row] for row in series]), arb_mat(slopes)
 
 
 STEPS = 60
@@ -102,7 +42,7 @@ class ContactSolution:
     """Contacts to high precision, all midpoints exact.
 
     panel, v, inner, sign : place of each contact as a fraction of its panel, whether it may move, its sign
-    weights : in the units of the problem (noise bound not divided out)
+    weights : times their noise bounds, as certificates have them
     dual    : x in the basis of the problem
     residual : size of the last correction, or what the next one would be, relative
     regular : True when the optimality system is square and far from singular
@@ -137,12 +77,10 @@ def sharpen_contacts(
         inner = [bool(i) for i in contacts.inner]
         places, goal = contacts.panel.tolist(), arb(goal)
         bounds = [panels[k].bound() for k in places]
-        about = expand_locally(panels, places, v, inner, goal)
         begun, away, last = (x, v, w), arb("inf"), None
         for _ in range(STEPS):
-            if not about.reaches(v, goal):
-                about = expand_locally(panels, places, v, inner, goal)
-            F = optimality_residual(about, bounds, basis, x, v, w, p, signs, inner)
+            rows = contact_rows(panels, places, v, inner)
+            F = optimality_residual(rows, bounds, basis, x, w, p, signs, inner)
             size = largest_modulus(F)
             if not size <= away:
                 (x, v, w), regular, size = begun, False, away / AWAY
@@ -161,14 +99,13 @@ def sharpen_contacts(
             if done:  # with the ratio of the last two the next correction would be below the goal
                 break
         dual = basis.transform.transpose() * arb_mat([[a] for a in x])
-        weights = [a * basis.size / panels[k].bound() for a, k in zip(w, contacts.panel, strict=True)]
         touching = tuple((k, unit_fraction(u)) for k, u in contacts.touching)
         return ContactSolution(
             tuple(int(k) for k in contacts.panel),
             tuple(v),
             tuple(inner),
             tuple(signs),
-            tuple(a.mid() for a in weights),
+            tuple((a * basis.size).mid() for a in w),
             tuple(dual[i, 0].mid() for i in range(m)),
             float(size),
             regular,
@@ -188,9 +125,9 @@ def pin_dual(
     signs, inner = [int(s) for s in places.sign], [bool(i) for i in places.inner]
     y, goal = [arb(float(c)) for c in x], arb(goal)
     bounds = [problem.panels[k].bound() for k in places.panel]
-    about = expand_locally(problem.panels, places.panel.tolist(), v, inner, goal)
+    here = contact_rows(problem.panels, places.panel.tolist(), v, inner)
     for _ in range(STEPS):
-        F = optimality_residual(about, bounds, basis, y, v, [arb(0)] * len(v), nothing, signs, inner)[: rows.shape[0]]
+        F = optimality_residual(here, bounds, basis, y, [arb(0)] * len(v), nothing, signs, inner)[: rows.shape[0]]
         if largest_modulus(F) < goal:
             break
         y = [(a + s).mid() for a, s in zip(y, newton_correction(inverse, F), strict=True)]
@@ -233,11 +170,10 @@ def newton_correction(inverse: np.ndarray, F: Sequence[arb]) -> list[arb]:
 
 
 def optimality_residual(
-    about: LocalExpansion,
+    rows: tuple[arb_mat, arb_mat],
     bounds: Sequence[arb],
     basis: Basis,
     x: Sequence[arb],
-    v: Sequence[arb],
     w: Sequence[arb],
     p: Sequence[arb],
     signs: Sequence[int],
@@ -245,11 +181,12 @@ def optimality_residual(
 ) -> list[arb]:
     """The optimality system in high precision; slopes with respect to u = 2 v - 1.
 
+    rows   : of :func:`contact_rows`
     bounds : the noise bound at every contact
     """
+    H, slopes = rows
     dual = basis.transform.transpose() * arb_mat([[a] for a in x])
-    values, slopes = about.sums(dual, v)
-    heights = [f / b - s for f, b, s in zip(values, bounds, signs, strict=True)]
-    flat = [f / (2 * b) for f, b, i in zip(slopes, bounds, inner, strict=True) if i]
-    balance = basis.transform * about.balance([a / b for a, b in zip(w, bounds, strict=True)], v)
+    heights = [f / b - s for f, b, s in zip((H * dual).entries(), bounds, signs, strict=True)]
+    flat = [f / (2 * b) for f, b, i in zip((slopes * dual).entries(), bounds, inner, strict=True) if i]
+    balance = basis.transform * H.transpose() * arb_mat([[a / b] for a, b in zip(w, bounds, strict=True)])
     return [a.mid() for a in [*heights, *flat, *(b - a for a, b in zip(p, balance.entries(), strict=True))]]

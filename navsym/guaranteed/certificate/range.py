@@ -8,19 +8,20 @@ may enter the regressors, the ends of the panels, the noise bounds and the funct
 
 from __future__ import annotations
 
+import json
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from typing import Any
 
 import sympy as sp
-from flint import arb, arb_mat, fmpq
+from flint import arb, arb_mat, fmpq, fmpq_mat
 
+from navsym import checker
 from navsym.core.balls import precision, series_terms
 from navsym.core.exact import decimal, from_decimal, to_fmpq
 from navsym.guaranteed.certificate.enclosure import PanelProblem
 from navsym.guaranteed.certificate.fixed import ENDS, certificate_header
 from navsym.guaranteed.certificate.moving import EVERY, Member, MovingProblem, expand_polynomial, series_coefficient
-from navsym.guaranteed.streaming.numbers import write_rational
 
 BITS = 192
 #: Order of the series in s, the last coefficient over the whole piece; and degree of the curves.
@@ -30,8 +31,9 @@ DIGITS = 32
 #: Cells of one piece: so many for each panel, and so many for each contact.
 CELLS, CELLS_EACH = 24, 12
 HUGE = 10**9
-#: A box has this much more room than Newton's step in it needs.
-MARGIN = arb(5) / 4
+#: A box has this much more room than Newton's step in it needs, and is tried with so many times what a step took: a
+#: checker's balls come from texts.
+MARGIN, SLACK = arb(5) / 4, 2
 #: Bounds of the value are this part of it wider than what is proved here.
 ROOM = 10**6
 #: Of what the unknown that moves most needs, relative to its size, every other has this part as well.
@@ -44,17 +46,32 @@ Pattern = tuple[tuple[int, str, int], ...]
 class PatternTrack:
     """What is followed: the contacts (panel, end, sign), a first solution, and the problem in a good basis.
 
-    first  : p -> Member of this pattern to start from, or None
-    moving : (a, b) -> the problem on that piece
-    holds  : whether the checker accepts the certificate of a piece alone
+    first : p -> Member of this pattern to start from, or None
+    basis : p -> the matrix of a good basis there
+    bases : (middle, half, basis) of pieces at which the basis was renewed
     """
 
     problem: PanelProblem
     parameter: sp.Symbol
     pattern: Pattern
     first: Callable[[fmpq], Member | None]
-    moving: Callable[[fmpq, fmpq], MovingProblem]
-    holds: Callable[[RangePiece], bool]
+    basis: Callable[[fmpq], fmpq_mat]
+    bases: list[tuple[fmpq, fmpq, fmpq_mat]] = field(default_factory=list)
+
+    def moving(self, a: fmpq, b: fmpq) -> MovingProblem:
+        """The problem on a piece, in a basis that is renewed now and then."""
+        middle, half = (a + b) / 2, (b - a) / 2
+        if not self.bases or abs(middle - self.bases[-1][0]) > 2 * self.bases[-1][1]:
+            self.bases.append((middle, half, self.basis(middle)))
+        return MovingProblem(self.problem, self.parameter, self.bases[-1][2], middle, half)
+
+    def holds(self, piece: RangePiece) -> bool:
+        """Whether the checker, whose balls come from texts, accepts the certificate of a piece alone."""
+        try:
+            checker.check(checker.load(json.dumps(range_document(self.problem, self.parameter.name, [piece]))))
+        except checker.Refused:
+            return False
+        return True
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -83,7 +100,7 @@ def range_document(problem: PanelProblem, parameter: str, pieces: Sequence[Range
     room = max(abs(low), abs(high)) / ROOM
     ends = decimal(low - room, 9, -1), decimal(high + room, 9, 1)
     head = certificate_header(problem, "range", BITS, sum(p.cells for p in pieces), *ends)
-    over = {"parameter": parameter, "from": write_rational(pieces[0].lower), "to": write_rational(pieces[-1].upper)}
+    over = {"parameter": parameter, "from": str(pieces[0].lower), "to": str(pieces[-1].upper)}
     return head | over | {"pieces": [p.row for p in pieces]}
 
 
@@ -230,17 +247,17 @@ def find_box(
         if move is None or not all(bool(abs(d) < HUGE) for d in move.values()):
             return None
         if attempt and all(bool(abs(d) * MARGIN < radius[k]) for k, d in move.items()):
-            spread = {k: abs(move[k]).upper() * moving.slack for k in range(moving.size)}
+            spread = {k: abs(move[k]).upper() * SLACK for k in range(moving.size)}
             return radius, value_ball(moving, z[: moving.size], spread)
-        radius = {k: arb(from_decimal(decimal(r, 3, 1))) for k, r in box_radius(move, z, moving.slack).items()}
+        radius = {k: arb(from_decimal(decimal(r, 3, 1))) for k, r in box_radius(move, z).items()}
     return None
 
 
-def box_radius(move: dict[int, arb], z: Sequence[Sequence[arb]], slack: int) -> dict[int, arb]:
-    """The radius of a box in which Newton's step has so many times the room that it needs."""
+def box_radius(move: dict[int, arb], z: Sequence[Sequence[arb]]) -> dict[int, arb]:
+    """The radius of a box in which Newton's step has more room than it needs."""
     sizes = {k: max(map(abs, z[k]), key=lambda a: float(a.mid())) + arb(10) ** -20 for k in move}
     worst = max((abs(d).upper() / sizes[k] for k, d in move.items()), key=to_fmpq) + arb(10) ** (4 - DIGITS)
-    return {k: (slack * abs(d).upper() + SHARE * worst * sizes[k]).upper() for k, d in move.items()}
+    return {k: (SLACK * abs(d).upper() + SHARE * worst * sizes[k]).upper() for k, d in move.items()}
 
 
 def value_ball(moving: MovingProblem, y: Sequence[Sequence[arb]], spread: dict[int, arb]) -> arb:
@@ -306,9 +323,9 @@ def piece_row(
         for i, (k, kind, _) in enumerate(track.pattern)
     ]
     return {
-        "from": write_rational(moving.middle - moving.half),
-        "to": write_rational(moving.middle + moving.half),
-        "basis": [[write_rational(moving.basis[i, j]) for j in range(m)] for i in range(m)],
+        "from": str(moving.middle - moving.half),
+        "to": str(moving.middle + moving.half),
+        "basis": [[str(moving.basis[i, j]) for j in range(m)] for i in range(m)],
         "dual": [text(c) for c in curves[:m]],
         "contacts": contacts,
         "radius": [decimal(to_fmpq(radius.get(k, smallest)), 12, 1) for k in range(m + 2 * l)],

@@ -12,7 +12,7 @@ from flint import fmpq
 
 from navsym.claims import Status
 from navsym.claims.display import display_latex, latex_of, write_card, write_table
-from navsym.core.answers import Answer
+from navsym.core.answers import Answer, named
 from navsym.core.balls import enclose
 from navsym.core.errors import DomainError
 from navsym.core.exact import decimal, to_fmpq
@@ -201,14 +201,8 @@ class Phases(Answer):
 
     def document(self) -> dict[str, Any]:
         """The JSON document of ``navsym phases``."""
-        return {
-            "target": self.target,
-            "parameter": self.parameter,
-            "range": [to_text(self.lower), to_text(self.upper)],
-            "regimes": [regime.document() for regime in self.regimes],
-            "boundaries": [boundary.document() for boundary in self.boundaries],
-            "uncovered": [list(pair) for pair in self.uncovered],
-        } | ({"given_up": list(self.given_up)} if self.given_up else {})
+        head = named(self, "target parameter") | {"range": [to_text(self.lower), to_text(self.upper)]}
+        return head | named(self, "regimes boundaries uncovered" + " given_up" * bool(self.given_up))
 
     def certificates(self) -> list[Mapping[str, Any]]:
         """Certificates of closed forms, of the regimes without one and of slivers, for :func:`navsym.check`."""
@@ -425,15 +419,10 @@ class PhaseMap(Answer):
         first, second = self.parameters
         ends = zip((first, second), (self.first_ends, self.second_ends), strict=True)
         return {
-            "target": self.target,
-            "parameters": [first, second],
+            **named(self, "target parameters"),
             "range": {name: [end_text(a), end_text(b)] for name, (a, b) in ends},
             "regions": [region_document(parts, first, second) for parts in self.regions],
-            "curves": [curve.document() for curve in self.curves],
-            "meetings": [point.document() for point in self.meetings],
-            "covered": self.covered,
-            "uncovered": list(self.uncovered),
-        } | ({"given_up": list(self.given_up)} if self.given_up else {})
+        } | named(self, "curves meetings covered uncovered" + " given_up" * bool(self.given_up))
 
     def __repr__(self) -> str:
         ranges = zip(self.parameters, (self.first_ends, self.second_ends), strict=True)

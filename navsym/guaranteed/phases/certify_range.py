@@ -2,29 +2,20 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
 from functools import partial
 from typing import Any
 
 import sympy as sp
-from flint import arb, arb_mat, arb_series, fmpq, fmpq_mat
+from flint import fmpq, fmpq_mat
 
-from navsym import checker
-from navsym.core.balls import enclose, series_terms
+from navsym.checker import AT_ZERO
 from navsym.core.exact import decimal, from_decimal, to_fmpq, to_fraction, to_rational
 from navsym.guaranteed.certificate.basis import make_basis
-from navsym.guaranteed.certificate.enclosure import interval_ball
-from navsym.guaranteed.certificate.moving import (
-    Member,
-    MovingProblem,
-    VanishingProblem,
-    rational_functional,
-    series_coefficient,
-)
+from navsym.guaranteed.certificate.entire import REMAINDERS
+from navsym.guaranteed.certificate.moving import Member, rational_functional
 from navsym.guaranteed.certificate.range import (
-    BITS,
     PatternTrack,
     RangePiece,
     RangeProof,
@@ -55,7 +46,7 @@ REACH = fmpq(7, 8)
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Echelon:
-    """Rational A, the first powers of its rows, the power for the functional, coefficients of A H by panel.
+    """Rational A, the first powers of its rows, and the power for the functional.
 
     reach : the length up to which every argument stays within REACH
     """
@@ -63,7 +54,6 @@ class Echelon:
     basis: fmpq_mat
     lows: tuple[int, ...]
     shift: int
-    exact: tuple[fmpq_mat, ...]
     reach: fmpq
 
 
@@ -82,10 +72,9 @@ def echelon_form(family: Family) -> Echelon | None:
         return None
     A = fmpq_mat([[row[k] for k in pivots] for row in wide]).inv()
     lows = tuple(k // len(tables) for k in pivots)
-    exact = tuple(A * fmpq_mat(m, count, [c for row in t for c in row]) for t in tables if t is not None)
     image = A * fmpq_mat(m, 1, rational_functional(family.moving))
     shift = max(low for i, low in enumerate(lows) if image[i, 0] != 0)
-    return Echelon(A, lows, shift, exact, REACH / max(rates) if rates else fmpq(10**6))
+    return Echelon(A, lows, shift, REACH / max(rates) if rates else fmpq(10**6))
 
 
 def argument_rates(row: list[sp.Expr]) -> list[fmpq] | None:
@@ -148,103 +137,53 @@ def taylor_table(row: tuple[sp.Expr, ...], count: int) -> list[list[fmpq]] | Non
     return table
 
 
-def scaled_problem(family: Family, form: Echelon, start: fmpq, end: fmpq) -> VanishingProblem:
-    """The scaled problem for lengths from start to end: exact coefficients, and the last one over [0, end]."""
-    m, count = form.basis.nrows(), form.exact[0].ncols()
-    mix = arb_mat(m, m, [arb(a) for a in form.basis.entries()])
-    local = []
-    for panel, table in zip(family.moving.panels, form.exact, strict=True):
-        with series_terms(count + 1):
-            sigma = enclose(panel.sigma, bits=BITS)
-            whole = panel.program.run({panel.variable: arb_series([interval_ball(fmpq(0), end), arb(1)])})
-            last = mix * arb_mat([[series_coefficient(h, count)] for h in whole])
-        rows = [[arb(table[i, k]) / sigma for k in range(count)] + [last[i, 0] / sigma] for i in range(m)]
-        local.append(tuple(tuple(row) for row in rows))
-    middle, half = (start + end) / 2, (end - start) / 2
-    return VanishingProblem(
-        family.moving, family.parameter, form.basis, middle, half, form.lows, form.shift, tuple(local)
-    )
+def rescale_family(family: Family, form: Echelon, *, entire: bool = False) -> Family:
+    """The same problems with places as shares of the interval and rows scaled: ``(A H)_i(T u) / T**k_i``.
 
-
-# -- the certificate: regressors written with entire functions ---------------------------------------
-
-
-def scaled_certificate(family: Family, form: Echelon, pieces: Sequence[RangePiece]) -> dict[str, Any]:
-    """A range certificate of the scaled problem on [0, 1], and the identities that tie it to the original.
-
-    ``sin_k(x)`` is sin(x) less its Taylor polynomial of degree below k, divided by x**k, and so for the others.
+    entire : with entire functions, so that the rows are regular at T = 0; for lengths within the reach of the form
     """
-    m, T = len(family.functional), family.parameter.name
-    v = "v" if T != "v" else "place"
-    document = plain_certificate(family, pieces)
-    for row, panel in zip(family.rows, document["panels"], strict=True):
-        panel |= {"from": "0", "to": "1", "H": [scaled_row_text(form, i, row, T, v) for i in range(m)]}
-    unit = [[str(int(i == j)) for j in range(m)] for i in range(m)]
-    own = {"functional": scaled_functional(family, form), "pieces": [p.row | {"basis": unit} for p in pieces]}
-    return tie_certificate(family, form, document | own | {"variable": v})
-
-
-def rescale_family(family: Family, form: Echelon) -> Family:
-    """The same problems with places as shares of the interval and rows scaled, for lengths above zero."""
     T, m = family.parameter, len(family.functional)
-    rows = tuple(
-        tuple(
-            sum((to_rational(form.basis[i, j]) * h.subs(U, T * U) for j, h in enumerate(row)), sp.S.Zero)
-            / T ** form.lows[i]
-            for i in range(m)
-        )
-        for row in family.rows
-    )
+    scaled = entire_row if entire else scaled_row
+    rows = tuple(tuple(scaled(form, i, row, T) for i in range(m)) for row in family.rows)
     image = form.basis * fmpq_mat(m, 1, rational_functional(family.moving))
     functional = tuple(to_rational(image[i, 0]) * T ** (form.shift - low) for i, low in enumerate(form.lows))
     return replace(family, rows=rows, functional=functional, start=sp.S.Zero, end=sp.S.One)
 
 
-def tie_certificate(family: Family, form: Echelon, document: dict[str, Any]) -> dict[str, Any]:
-    """A certificate of the rescaled problem with the identities that tie it to the original."""
-    T, v = family.parameter, document["variable"]
-    ties = [
-        tie_identity(form, i, row, text, T, v)
-        for row, panel in zip(family.rows, document["panels"], strict=True)
-        for i, text in enumerate(panel["H"])
-    ]
-    return {"kind": "all", "of": [document, *ties]}
+def scaled_row(form: Echelon, i: int, row: Sequence[sp.Expr], T: sp.Symbol) -> sp.Expr:
+    """Row i of ``A H(T u) / T**k_i``."""
+    terms = (to_rational(form.basis[i, j]) * h.subs(U, T * U) for j, h in enumerate(row))
+    return sum(terms, sp.S.Zero) / T ** form.lows[i]
 
 
-def scaled_row_text(form: Echelon, i: int, row: tuple[sp.Expr, ...], T: str, v: str) -> str:
-    """Row i of ``A H(T v) / T**k_i``, powers cancelled."""
-    parts: dict[sp.Symbol, str] = {}
+def entire_row(form: Echelon, i: int, row: Sequence[sp.Expr], T: sp.Symbol) -> sp.Expr:
+    """The same with powers of T cancelled."""
+    parts: dict[sp.Expr, sp.Symbol] = {}
     K = max(form.lows) + 1
-    total = sum(
-        (to_rational(form.basis[i, j]) * expand_functions(h, K, T, v, parts) for j, h in enumerate(row)), sp.S.Zero
-    )
-    terms = []
-    for (power,), factor in sp.Poly(sp.expand(total), U).terms():
-        for monomial, c in sp.Poly(factor, *parts).terms() if parts else [((), factor)]:
-            texts = [f"({to_text(c)})", f"{T}**{power - form.lows[i]}", f"{v}**{power}"]
-            texts += [f"{name}**{n}" for name, n in zip(parts.values(), monomial, strict=True) if n]
-            terms.append("*".join(texts))
-    return " + ".join(terms)
+    terms = (to_rational(form.basis[i, j]) * expand_functions(h, K, parts) for j, h in enumerate(row))
+    known = sp.Poly(sp.expand(sum(terms, sp.S.Zero)), U).terms()
+    here = {symbol: f.subs(U, T * U) for f, symbol in parts.items()}
+    scaled = (c.xreplace(here) * T ** (power - form.lows[i]) * U**power for (power,), c in known)
+    return sum(scaled, sp.S.Zero)
 
 
-def expand_functions(h: sp.Expr, K: int, T: str, v: str, parts: dict[sp.Symbol, str]) -> sp.Expr:
-    """h with every function written as its Taylor polynomial and ``(c u)**K`` times an entire function.
+def expand_functions(h: sp.Expr, K: int, parts: dict[sp.Expr, sp.Symbol]) -> sp.Expr:
+    """h with every function written as its Taylor polynomial and ``u**K`` times a part that is regular at zero.
 
-    A reciprocal is written as its Taylor polynomial and ``u**K`` times a rational function.
+    parts : regular part -> the symbol that stands for it
     """
 
     def function(f: sp.Expr) -> sp.Expr:
-        c, name = sp.expand(f.args[0] / U), {sp.sin: "sin", sp.cos: "cos", sp.exp: "exp"}[f.func]
-        symbol = sp.Symbol(f"{name}[{c}]")
-        parts[symbol] = f"{name}_{K}(({to_text(c)})*{T}*{v})"
-        return taylor_polynomial(name, c, K) + (c * U) ** K * symbol
+        c, remainder = sp.expand(f.args[0] / U), REMAINDERS[f.func]
+        signs = AT_ZERO[remainder.name]
+        polynomial = sum((signs[k % 4] * (c * U) ** k / sp.factorial(k) for k in range(K)), sp.S.Zero)
+        return polynomial + (c * U) ** K * parts.setdefault(remainder(K, c * U), sp.Dummy())
 
     def reciprocal(f: sp.Expr) -> sp.Expr:
-        (table,), symbol = taylor_table((f,), K) or ([],), sp.Symbol(f"rest[{f}]")
+        (table,) = taylor_table((f,), K) or ([],)
         polynomial = sum((to_rational(a) * U**k for k, a in enumerate(table)), sp.S.Zero)
         rest = sp.cancel(sp.together(f - polynomial) / U**K)
-        parts[symbol] = f"({to_text(rest.subs(U, sp.Symbol(T, real=True) * sp.Symbol(v, real=True)))})"
-        return polynomial + U**K * symbol
+        return polynomial + U**K * parts.setdefault(rest, sp.Dummy())
 
     shown = in_exponentials(h)
     below = reciprocals(shown)
@@ -252,28 +191,22 @@ def expand_functions(h: sp.Expr, K: int, T: str, v: str, parts: dict[sp.Symbol, 
     return sp.expand(shown.xreplace({f: reciprocal(f) for f in below}))
 
 
-def taylor_polynomial(name: str, c: sp.Rational, K: int) -> sp.Expr:
-    """Taylor polynomial, of degree below K, of exp, sin or cos of c u."""
-    signs = {"exp": lambda k: 1, "sin": lambda k: (0, 1, 0, -1)[k % 4], "cos": lambda k: (1, 0, -1, 0)[k % 4]}
-    return sum((signs[name](k) * (c * U) ** k / sp.factorial(k) for k in range(K)), sp.S.Zero)
-
-
-def tie_identity(form: Echelon, i: int, row: tuple[sp.Expr, ...], text: str, T: sp.Symbol, v: str) -> dict[str, Any]:
-    """``H_i T**k_i = sum_j A_ij H_j(T v)``."""
-    place = sp.Symbol(v, real=True)
-    pairs = [(to_rational(form.basis[i, j]), h.subs(U, T * place)) for j, h in enumerate(row)]
-    right = " + ".join(f"({to_text(a)})*({to_text(h)})" for a, h in pairs if a != 0)
-    return {"kind": "identity", "left": f"({text})*{T.name}**{form.lows[i]}", "right": right, "symbols": [T.name, v]}
-
-
-def scaled_functional(family: Family, form: Echelon) -> list[str]:
-    """``(A P)_i T**(shift - k_i)`` as texts for the certificate."""
-    image = form.basis * fmpq_mat(form.basis.nrows(), 1, rational_functional(family.moving))
-    T = family.parameter.name
-    return [
-        f"({to_text(to_rational(image[i, 0]))})*{T}**{form.shift - low}" if image[i, 0] != 0 else "0"
-        for i, low in enumerate(form.lows)
+def tie_certificate(family: Family, form: Echelon, document: dict[str, Any]) -> dict[str, Any]:
+    """A certificate of the rescaled problem with the identities that tie it to the original."""
+    ties = [
+        tie_identity(form, i, row, text, family.parameter)
+        for row, panel in zip(family.rows, document["panels"], strict=True)
+        for i, text in enumerate(panel["H"])
     ]
+    return {"kind": "all", "of": [document, *ties]}
+
+
+def tie_identity(form: Echelon, i: int, row: Sequence[sp.Expr], text: str, T: sp.Symbol) -> dict[str, Any]:
+    """``H_i T**k_i = sum_j A_ij H_j(T u)``."""
+    pairs = [(to_rational(form.basis[i, j]), h.subs(U, T * U)) for j, h in enumerate(row)]
+    right = " + ".join(f"({to_text(a)})*({to_text(h)})" for a, h in pairs if a != 0)
+    left = f"({text})*{T.name}**{form.lows[i]}"
+    return {"kind": "identity", "left": left, "right": right, "symbols": [T.name, U.name]}
 
 
 MOST_CELLS = 10_000
@@ -287,31 +220,33 @@ def follow_regime(
     if form is None:
         least = max(lower, upper / 400) if family.growing else lower
         found = follow_from_middle(family, pattern, least, upper, enough)
-        documents = [plain_certificate(family, part) for part in group_pieces(found)]
-        return RangeProof(tuple(found), tuple(documents))
+        return RangeProof(tuple(found), tuple(range_certificates(family, found)))
     start, documents = [], []
+    scaled = rescale_family(family, form)
     if lower == 0:
-        start = follow_from_zero(family, form, pattern, upper, enough)
+        near = rescale_family(family, form, entire=True)
+        start = follow_from_zero(near, scaled, form.reach, pattern, upper, enough)
         if not start:
             return RangeProof((), ())
         lower = start[-1].upper
-        documents += [scaled_certificate(family, form, part) for part in group_pieces(start)]
-    scaled_family = rescale_family(family, form)
-    rest = follow_from_middle(scaled_family, pattern, lower, upper, enough) if lower < upper else []
+        documents += range_certificates(near, start)
+    rest = follow_from_middle(scaled, pattern, lower, upper, enough) if lower < upper else []
     if rest and lower < rest[0].lower and not enough():
-        rest = [*follow_from_middle(scaled_family, pattern, lower, rest[0].lower, enough), *rest]
-    documents += [tie_certificate(family, form, plain_certificate(scaled_family, part)) for part in group_pieces(rest)]
-    return RangeProof((*start, *rest), tuple(documents))
+        rest = [*follow_from_middle(scaled, pattern, lower, rest[0].lower, enough), *rest]
+    documents += range_certificates(scaled, rest)
+    return RangeProof((*start, *rest), tuple(tie_certificate(family, form, document) for document in documents))
 
 
 def follow_from_middle(
     family: Family, pattern: Pattern, lower: fmpq, upper: fmpq, enough: Callable[[], bool]
 ) -> list[RangePiece]:
     """Pieces from the middle towards both ends; in a turned basis where the first one makes none."""
-    found = follow_pattern(plain_track(family, pattern, conditioning_matrix), lower, upper, enough)
-    if found or enough():
-        return found
-    return follow_pattern(plain_track(family, pattern, reflected_matrix), lower, upper, enough)
+    found: list[RangePiece] = []
+    for basis in (conditioning_matrix, reflected_matrix):
+        found = follow_pattern(track_pattern(family, family, pattern, basis), lower, upper, enough)
+        if found or enough():
+            break
+    return found
 
 
 def covered(pieces: Sequence[RangePiece]) -> list[tuple[fmpq, fmpq]]:
@@ -319,25 +254,9 @@ def covered(pieces: Sequence[RangePiece]) -> list[tuple[fmpq, fmpq]]:
     return join_intervals([(one.lower, one.upper) for one in pieces])
 
 
-def plain_certificate(family: Family, pieces: Sequence[RangePiece]) -> dict[str, Any]:
-    """The range certificate of pieces that lie next to each other."""
-    return range_document(family.moving, family.parameter.name, pieces)
-
-
-def checker_accepts(document: Callable[[Sequence[RangePiece]], dict[str, Any]]) -> Callable[[RangePiece], bool]:
-    """A predicate: the independent checker accepts the certificate of a piece alone.
-
-    Its balls come from texts, and are not those of the proof here.
-    """
-
-    def accepts(one: RangePiece) -> bool:
-        try:
-            checker.check(checker.load(json.dumps(document([one]))))
-        except checker.Refused:
-            return False
-        return True
-
-    return accepts
+def range_certificates(family: Family, pieces: Sequence[RangePiece]) -> list[dict[str, Any]]:
+    """The range certificates of pieces in order."""
+    return [range_document(family.moving, family.parameter.name, part) for part in group_pieces(pieces)]
 
 
 def group_pieces(pieces: Sequence[RangePiece]) -> list[list[RangePiece]]:
@@ -354,34 +273,24 @@ def group_pieces(pieces: Sequence[RangePiece]) -> list[list[RangePiece]]:
     return done
 
 
-def plain_track(family: Family, pattern: Pattern, basis: Callable[[Family, fmpq], fmpq_mat]) -> PatternTrack:
-    """The problem in a basis at a value of the parameter, which is renewed now and then."""
-    bases: list[tuple[fmpq, fmpq, fmpq_mat]] = []
-
-    def moving(a: fmpq, b: fmpq) -> MovingProblem:
-        middle, half = (a + b) / 2, (b - a) / 2
-        if not bases or abs(middle - bases[-1][0]) > 2 * bases[-1][1]:
-            bases.append((middle, half, basis(family, middle)))
-        return MovingProblem(family.moving, family.parameter, bases[-1][2], middle, half)
-
-    first, holds = partial(pattern_member, family, pattern), checker_accepts(partial(plain_certificate, family))
-    return PatternTrack(family.moving, family.parameter, pattern, first, moving, holds)
+def track_pattern(
+    family: Family, members: Family, pattern: Pattern, basis: Callable[[Family, fmpq], fmpq_mat]
+) -> PatternTrack:
+    """What is followed of a family; its first solution comes from the members of an equal one."""
+    first = partial(pattern_member, members, pattern)
+    return PatternTrack(family.moving, family.parameter, pattern, first, partial(basis, family))
 
 
 def follow_from_zero(
-    family: Family, form: Echelon, pattern: Pattern, upper: fmpq, enough: Callable[[], bool]
+    near: Family, scaled: Family, reach: fmpq, pattern: Pattern, upper: fmpq, enough: Callable[[], bool]
 ) -> list[RangePiece]:
-    """Pieces from the length zero on, scaled by powers of the length, as far as their series are sharp."""
-    track = PatternTrack(
-        family.moving,
-        family.parameter,
-        pattern,
-        partial(pattern_member, family, pattern),
-        partial(scaled_problem, family, form),
-        checker_accepts(lambda part: scaled_certificate(family, form, part)["of"][0]),
-    )
-    last = min(short_decimal(upper * fmpq(7, 8), upper), short_decimal(form.reach, form.reach))
-    end = last
+    """Pieces from the length zero on, as far as the entire functions of the rows reach.
+
+    scaled : the same family where balls and doubles have values: for lengths above zero
+    """
+    track = track_pattern(near, scaled, pattern, unit_matrix)
+    last = min(upper, short_decimal(reach, reach))
+    end = short_decimal(last * fmpq(7, 8), last)
     for _ in range(12):
         if enough():
             break
@@ -398,9 +307,14 @@ def pattern_member(family: Family, pattern: Pattern, p: fmpq) -> Member | None:
     found = sharp_member(family, to_fraction(p), pattern)
     if found is None:
         return None
-    done, problem = found.polished, family.exact(to_rational(p))
-    weights = [w * problem.panels[k].bound() for w, k in zip(done.weights, done.panel, strict=True)]
-    return Member(tuple(map(to_fmpq, done.dual)), tuple(map(to_fmpq, done.v)), tuple(map(to_fmpq, weights)))
+    done = found.polished
+    return Member(*(list(map(to_fmpq, part)) for part in (done.dual, done.v, done.weights)))
+
+
+def unit_matrix(family: Family, _: fmpq) -> fmpq_mat:
+    """No other basis: rows that are scaled are as independent as powers."""
+    m = len(family.functional)
+    return fmpq_mat(m, m, [int(i == j) for i in range(m) for j in range(m)])
 
 
 def conditioning_matrix(family: Family, p: fmpq) -> fmpq_mat:

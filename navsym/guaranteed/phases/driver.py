@@ -9,9 +9,8 @@ two-sided certificates.
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from fractions import Fraction
-from functools import partial
 from itertools import pairwise
 from typing import Any
 
@@ -26,10 +25,10 @@ from navsym.guaranteed.phases.answer import Phases, Regime, end_text
 from navsym.guaranteed.phases.boundaries import Boundary, locate_boundary, unlocated_boundary
 from navsym.guaranteed.phases.budget import DEFAULT_SECONDS, Budget
 from navsym.guaranteed.phases.certify_range import covered, follow_regime
-from navsym.guaranteed.phases.closed_forms import ClosedForm, propose_closed_forms, prove_closed_form
+from navsym.guaranteed.phases.closed_forms import ClosedForm, propose_closed_forms
 from navsym.guaranteed.phases.family import Family
 from navsym.guaranteed.phases.narrow import Sliver, certify_slivers
-from navsym.guaranteed.phases.neighbours import extend_forms, merge_regimes
+from navsym.guaranteed.phases.neighbours import Ends, boundary_middle, cuts_of, extend_forms, merge_regimes, prove_form
 from navsym.guaranteed.phases.patterns import BRACKET, COUNT, PatternInterval, scan_patterns
 from navsym.guaranteed.phases.singular_values import (
     RegularInterval,
@@ -50,14 +49,6 @@ POINTS = 5
 #: Next to a singular value this part of the range is left, and named in ``uncovered``.
 MARGIN = Fraction(1, 100_000)
 DIGITS = 34
-
-
-@dataclass(frozen=True, slots=True)
-class FollowOptions:
-    """Which regimes are followed rigorously: those without a closed form, those with one."""
-
-    implicit: bool
-    closed: bool
 
 
 RegimeLimits = tuple[fmpq, fmpq, fmpq, fmpq]
@@ -102,8 +93,10 @@ def settle_regime(
     ends: tuple[sp.Expr, sp.Expr],
     limits: RegimeLimits,
     closed: ClosedForm | None,
-    follow: FollowOptions,
     limit: Budget,
+    *,
+    certify: bool,
+    unique: bool,
 ) -> tuple[list[Regime], list[tuple[str, str]]]:
     """One regime: its proved closed form, or contacts followed for every value, slivers and holes.
 
@@ -112,11 +105,11 @@ def settle_regime(
     a, b = ends
     name = f"from {end_text(a)} to {end_text(b)}"
     if closed is not None:
-        done = follow_within(family, span, limits, limit, name) if follow.closed else RangeProof((), ())
+        done = follow_within(family, span, limits, limit, name) if unique else RangeProof((), ())
         held, status = (limits[1], limits[2]), closed.verdict.status
         return [Regime(family, span, a, b, closed, status, (), done.documents, (), held, longest_run(done))], []
     shown = limit.share(1 / 4).within(f"the table of values {name}", value_table, family, span) or ()
-    if not follow.implicit:
+    if not certify:
         return [Regime(family, span, a, b, None, OPEN, shown)], [(end_text(a, -1), end_text(b, 1))]
     done = follow_within(family, span, limits, limit.share(3 / 4), name)
     thin: list[Sliver] = []
@@ -196,7 +189,6 @@ def value_table(family: Family, span: PatternInterval) -> tuple[dict[str, Any], 
 
 
 Forms = Sequence[ClosedForm | None]
-Ends = tuple[sp.Expr, sp.Expr]
 
 
 def locate_changes(
@@ -271,31 +263,11 @@ def relocate_changes(
     return found
 
 
-def prove_form(family: Family, guesses: Sequence[ClosedForm], ends: Ends, limit: Budget) -> ClosedForm | None:
-    """The closed form that is proved between the ends within the limit."""
-    found = prove_closed_form(family, guesses, *ends, seconds=limit.left()) if guesses and not limit.met() else None
-    if found is not None and found.verdict.status.holds:
-        return found
-    if guesses and limit.met():
-        limit.gives_up(f"the proof of a closed form from {end_text(ends[0])} to {end_text(ends[1])}")
-    return None
-
-
 def is_same_form(one: ClosedForm | None, other: ClosedForm | None) -> bool:
     """True for the same estimator and dual, whatever the verdicts."""
     if one is None or other is None:
         return one is other
     return (one.panels, one.places, one.weights, one.dual) == (other.panels, other.places, other.weights, other.dual)
-
-
-def cuts_of(changes: Sequence[Boundary], ends: Ends) -> list[sp.Expr]:
-    """The ends of the range with the changes between."""
-    return [ends[0], *map(boundary_middle, changes), ends[1]]
-
-
-def boundary_middle(b: Boundary) -> sp.Expr:
-    """The exact value of a boundary, or the middle of its bracket."""
-    return b.at if b.at is not None else (sp.Rational(b.lower) + sp.Rational(b.upper)) / 2
 
 
 #: A span below this part of the range is given up when its neighbours are proved to meet.
@@ -324,8 +296,10 @@ def find_phases(
     limit = Budget.of(seconds)
     plan, lost, edges = plan_range(family, lower, upper, limit.share(1 / 4))
     steps = StepCounter(progress, len(plan) * (COUNT - 1))
-    follow = FollowOptions(certify, unique)
-    parts = [solve_interval(section, follow, steps, limit.share(1 / (len(plan) - k))) for k, section in enumerate(plan)]
+    parts = [
+        solve_interval(section, steps, limit.share(1 / (len(plan) - k)), certify=certify, unique=unique)
+        for k, section in enumerate(plan)
+    ]
     uncovered = [*lost, *(pair for part in parts for pair in part.uncovered)]
     singular = {s.at: s for section in plan for s in section.singular}
     known = [singular_boundary(s) for s in singular.values() if not (s.at == lower == 0 and plan[0].family.growing)]
@@ -393,7 +367,7 @@ class StepCounter:
         self.progress(self.done, self.of)
 
 
-def solve_interval(section: RegularInterval, follow: FollowOptions, steps: StepCounter, limit: Budget) -> Phases:
+def solve_interval(section: RegularInterval, steps: StepCounter, limit: Budget, **follow: bool) -> Phases:
     """All regimes between two values without a singular one inside."""
     family, lower, singular = section.family, section.lower, section.names
     low, high = inner_range(lower, section.upper, singular)
@@ -408,22 +382,14 @@ def solve_interval(section: RegularInterval, follow: FollowOptions, steps: StepC
     )
     first = locate_changes(family, spans, [g[0] if g else None for g in guesses], limit.share(1 / 2))
     changes, forms = agree_on_forms(family, spans, guesses, first, (lower, upper), limit.share(3 / 4))
-    part = limit.share(1 / 4)
-    merge_regimes(
-        family,
-        spans,
-        forms,
-        changes,
-        partial(cuts_of, ends=(lower, upper)),
-        lambda form, start, end: prove_form(family, [form], (start, end), part.share(1 / 2)),
-    )
+    merge_regimes(family, spans, forms, changes, (lower, upper), limit.share(1 / 4))
     cuts = cuts_of(changes, (lower, upper))
     limits = regime_limits(family, lower, upper, low, high, changes, singular)
     regimes: list[list[Regime]] = []
     uncovered = []
     for k, span in enumerate(spans):
         part = limit.share(1 / (len(spans) - k))
-        parts, holes = settle_regime(family, span, (cuts[k], cuts[k + 1]), limits[k], forms[k], follow, part)
+        parts, holes = settle_regime(family, span, (cuts[k], cuts[k + 1]), limits[k], forms[k], part, **follow)
         regimes.append(parts)
         uncovered += holes
         steps.did(StepCounter.LOOKS)

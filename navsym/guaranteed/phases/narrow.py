@@ -34,7 +34,6 @@ from navsym.guaranteed.certificate.range import never
 from navsym.guaranteed.phases.family import Family
 from navsym.guaranteed.phases.patterns import order_contacts
 from navsym.guaranteed.search.exchange import Contacts, find_contacts
-from navsym.guaranteed.streaming.numbers import write_rational
 
 DIGITS = 14
 BITS = 400
@@ -138,8 +137,8 @@ def certify_sliver(family: Family, start: fmpq, end: fmpq) -> tuple[Sliver | Non
     lower, upper = decimal(least - room, DIGITS + 6, -1), decimal(most + room, DIGITS + 6, 1)
     document = certificate_header(shown, "sliver", BITS, cells, lower, upper) | {
         "parameter": family.parameter.name,
-        "from": write_rational(start),
-        "to": write_rational(end),
+        "from": str(start),
+        "to": str(end),
         "dual": [decimal(c, PLACES) for c in x],
         "support": [[k, decimal(v, PLACES)] for k, v in support],
     }

@@ -7,10 +7,9 @@ dual they are optimal there. A guess first, in doubles by weak duality; then pro
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import replace
 from fractions import Fraction
-from functools import partial
 from itertools import groupby, product
 
 import numpy as np
@@ -21,8 +20,10 @@ from navsym.claims import OPEN, Verdict
 from navsym.core.balls import enclose
 from navsym.core.exact import to_rational
 from navsym.guaranteed.certificate.basis import to_doubles
+from navsym.guaranteed.phases.answer import end_text
 from navsym.guaranteed.phases.boundaries import Boundary, recognise_root
-from navsym.guaranteed.phases.closed_forms import ClosedForm, is_feasible, solve_weights
+from navsym.guaranteed.phases.budget import Budget
+from navsym.guaranteed.phases.closed_forms import ClosedForm, is_feasible, prove_closed_form, solve_weights
 from navsym.guaranteed.phases.family import Family
 from navsym.guaranteed.phases.patterns import Pattern, PatternInterval, sample_contacts
 from navsym.guaranteed.search.exchange import regressor_rows
@@ -34,6 +35,7 @@ SHARES = tuple(map(Fraction, ("0.03", "0.23", "0.59", "0.97")))
 PARTS = 12
 #: A carrier of the functional with the pattern it gives a span.
 Carrier = tuple[Pattern, ClosedForm]
+Ends = tuple[sp.Expr, sp.Expr]
 
 
 def inner_values(span: PatternInterval) -> list[Fraction]:
@@ -202,23 +204,42 @@ def flat_shares(family: Family, T: Fraction) -> tuple[Pattern, list[sp.Rational]
     return tuple((k, kinds.get(j, "no"), s) for k, j, s in chosen), [sp.Rational(j, PARTS) for _, j, _ in chosen]
 
 
+def cuts_of(changes: Sequence[Boundary], ends: Ends) -> list[sp.Expr]:
+    """The ends of the range with the changes between."""
+    return [ends[0], *map(boundary_middle, changes), ends[1]]
+
+
+def boundary_middle(b: Boundary) -> sp.Expr:
+    """The exact value of a boundary, or the middle of its bracket."""
+    return b.at if b.at is not None else (sp.Rational(b.lower) + sp.Rational(b.upper)) / 2
+
+
+def prove_form(family: Family, guesses: Sequence[ClosedForm], ends: Ends, limit: Budget) -> ClosedForm | None:
+    """The closed form that is proved between the ends within the limit."""
+    found = prove_closed_form(family, guesses, *ends, seconds=limit.left()) if guesses and not limit.met() else None
+    if found is not None and found.verdict.status.holds:
+        return found
+    if guesses and limit.met():
+        limit.gives_up(f"the proof of a closed form from {end_text(ends[0])} to {end_text(ends[1])}")
+    return None
+
+
 def merge_regimes(
     family: Family,
     spans: list[PatternInterval],
     forms: list[ClosedForm | None],
     changes: list[Boundary],
-    cuts: Callable[[Sequence[Boundary]], Sequence[sp.Expr]],
-    prove: Callable[..., ClosedForm | None],
+    ends: Ends,
+    limit: Budget,
 ) -> None:
     """Makes one, in place, of neighbours for which one closed form is proved, or whose pattern is the same."""
     k = 0
     while k < len(changes):
-        ends = cuts(changes)
+        cuts = cuts_of(changes, ends)
         left, right = spans[k], spans[k + 1]
         whole = PatternInterval(left.lower, right.upper, left.pattern)
         same = forms[k] is forms[k + 1] is None and left.pattern == right.pattern
-        on_both = partial(prove, start=ends[k], end=ends[k + 2])
-        shared = None if same else shared_form(family, spans, forms, k, ends[k], on_both)
+        shared = None if same else shared_form(family, spans, forms, k, (cuts[k], cuts[k + 2]), limit)
         if shared is None and not same:
             k += 1
             continue
@@ -233,22 +254,22 @@ def shared_form(
     spans: Sequence[PatternInterval],
     forms: Sequence[ClosedForm | None],
     k: int,
-    start: sp.Expr,
-    prove: Callable[[ClosedForm], ClosedForm | None],
+    ends: Ends,
+    limit: Budget,
 ) -> Carrier | None:
-    """A closed form of span k, which begins at the start, or the next that is proved on both.
+    """A closed form of span k or the next that is proved on both, from one end to the other.
 
     The interval of a growing family holds places of the start for every larger value: those of span k, and of the
     one before, which ends there.
     """
     carriers = [(spans[j].pattern, form) for j in (k, k + 1) if (form := forms[j]) is not None]
     duals = list(dict.fromkeys(form.dual for _, form in carriers))
-    if carriers and family.growing and start != 0:
+    if carriers and family.growing and ends[0] != 0:
         ending = [(spans[j].pattern, form) for j in (k - 1, k) if j >= 0 and (form := forms[j]) is not None]
-        carriers += [one for pair in ending for one in freeze_carrier(family, *pair, start)]
+        carriers += [one for pair in ending for one in freeze_carrier(family, *pair, ends[0])]
     values = [T for pair in zip(inner_values(spans[k]), inner_values(spans[k + 1]), strict=True) for T in pair]
     for pattern, guess in holding_form(family, values, carriers, duals):
-        done = prove(guess)
+        done = prove_form(family, [guess], ends, limit.share(1 / 2))
         if done is not None:
             return pattern, done
     return None

@@ -33,7 +33,7 @@ from navsym.guaranteed.phases.closed_forms import (
     sample_regime,
     signed_parameter,
 )
-from navsym.guaranteed.phases.driver import StepCounter, inner_range, is_same_form, plan_range, scan_interval
+from navsym.guaranteed.phases.driver import Ends, StepCounter, inner_range, is_same_form, plan_range, scan_interval
 from navsym.guaranteed.phases.family import Family
 from navsym.guaranteed.phases.patterns import Pattern, PatternInterval
 from navsym.guaranteed.phases.recognise import simple_place
@@ -56,8 +56,6 @@ QUICK = 12.0
 DIGITS = 90
 #: The share of a part, from its left curve to its right one.
 ACROSS = sp.Symbol("across", positive=True)
-
-Ends = tuple[sp.Expr, sp.Expr]
 
 
 @dataclass(frozen=True, slots=True, eq=False)

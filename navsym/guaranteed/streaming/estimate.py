@@ -16,7 +16,8 @@ from navsym.core.exact import decimal, lower_end, to_fmpq, upper_end
 from navsym.core.numbers import Number
 from navsym.guaranteed.streaming.flow import BITS, Flow, pivot_columns
 from navsym.guaranteed.streaming.memory import Row, group_rows, list_cones
-from navsym.guaranteed.streaming.numbers import NUMBER, middle, read_exact, to_float, write_rational
+from navsym.guaranteed.streaming.numbers import NUMBER, read_exact, to_float
+from navsym.language.expression import to_text
 from navsym.language.names import quote
 
 #: Digits of radii and duals.
@@ -135,7 +136,7 @@ class Estimate(Answer):
     def weights(self) -> list[tuple[float, str, float]]:
         """(time, measurement, weight) of the support."""
         rows = self.plan.support() if self.plan else []
-        return [(to_float(row.t), self.plan.flow.names[row.j], middle(w)) for row, w in rows]  # type: ignore[union-attr]
+        return [(to_float(row.t), self.plan.flow.names[row.j], float(w)) for row, w in rows]  # type: ignore[union-attr]
 
     def worst_case(self) -> list[tuple[float, str, float]]:
         """(time, measurement, error) of the noise that attains the radius; all others may be zero.
@@ -152,7 +153,7 @@ class Estimate(Answer):
         if self.plan is None:
             return []
         with precision(BITS):
-            return [(to_float(row.t), self.plan.flow.names[row.j], middle(r)) for row, r in self.plan.noise()]
+            return [(to_float(row.t), self.plan.flow.names[row.j], float(r)) for row, r in self.plan.noise()]
 
     @cached_property
     def certificate(self) -> Mapping[str, Any] | None:
@@ -169,10 +170,6 @@ class Estimate(Answer):
         if self.plan is None or not self.plan.whole or self.plan.upper < LEAST:
             return None
         return (write_cones if self.plan.flow.blocks else write_certificate)(self.plan)
-
-    def certificates(self) -> list[Mapping[str, Any]]:
-        """The certificate in a list, for :func:`navsym.check`."""
-        return [self.certificate] if self.certificate is not None else []
 
     def document(self, *, certificate: bool = True) -> dict[str, Any]:
         """The row of the epoch in the document of ``navsym guard``, with its certificate or with null in its place."""
@@ -238,17 +235,17 @@ def write_exclusion(why: Exclusion) -> dict[str, Any] | None:
             own = members[0].own if len(members) == 1 else None
             rows.append(
                 {
-                    "epoch": write_rational(members[0].t),
+                    "epoch": str(members[0].t),
                     "H": [combine_entries(factors, [line[k] for line in texts]) for k in columns],  # type: ignore[index]
                     "z": combine_entries(factors, [row.z for row in members]),
-                    "sigma": upper_end(sigma, 50) if own is None else write_rational(own),
+                    "sigma": upper_end(sigma, 50) if own is None else str(own),
                 }
             )
     return {
         "kind": "exclusion",
         "rows": rows,
         "most": why.most,
-        "excluded": [write_rational(t) for t in why.excluded],
+        "excluded": [str(t) for t in why.excluded],
         "contradictions": [list(places) for places in contradictions],
         "bits": BITS + 64,
         "cells": min(len(why.excluded) * len(columns) ** why.most + 1000, 20_000),
@@ -264,8 +261,8 @@ def complete(places: Sequence[int], lines: Sequence[Sequence[fmpq]]) -> list[int
 def combine_entries(factors: Sequence[fmpq], entries: Sequence[Any]) -> str:
     """The sum of factors times entries: a number where these are numbers, else a formula."""
     if not any(isinstance(e, str) for e in entries):
-        return write_rational(sum((a * e for a, e in zip(factors, entries, strict=True)), fmpq(0)))
-    terms = [str(e) if a == 1 else f"({write_rational(a)})*({e})" for a, e in zip(factors, entries, strict=True)]
+        return str(sum((a * e for a, e in zip(factors, entries, strict=True)), fmpq(0)))
+    terms = [str(e) if a == 1 else f"({a})*({e})" for a, e in zip(factors, entries, strict=True)]
     return " + ".join(terms)
 
 
@@ -312,7 +309,7 @@ def write_certificate(plan: Plan) -> dict[str, Any] | None:
             "kind": "gap",
             "variable": "place",
             "panels": panels,
-            "functional": [flow.functional_text(k) for k in plan.columns],
+            "functional": [to_text(flow.functional[k]) for k in plan.columns],
             "bits": BITS + 64,
             "cells": min(len(plan.rows) // 4 + 1, 20_000),
             "parameter": "none",

@@ -15,7 +15,7 @@ from navsym.core.balls import Tape, precision, tape
 from navsym.core.errors import DomainError, EmptyError, NavsymError, NotEstimableError
 from navsym.core.exact import to_fmpq
 from navsym.guaranteed.problem import chosen_target
-from navsym.guaranteed.streaming.numbers import to_float, write_rational
+from navsym.guaranteed.streaming.numbers import to_float
 from navsym.guaranteed.time_varying import has_varying_system
 from navsym.language.expression import to_text
 from navsym.language.names import quote
@@ -228,7 +228,7 @@ class Flow:
         found = arb_mat([[arb(program.run({self.time: arb(t)})) for program in self.programs[j]]])
         if not all(e.is_finite() for e in found.entries()):
             message = f"expected a regressor with a value; got none of {quote(self.names[j])}; correct h"
-            raise DomainError(message, where=f"t = {write_rational(t)}")
+            raise DomainError(message, where=f"t = {t}")
         if self.constant[j]:
             self.steady[j] = found
         return found
@@ -242,7 +242,7 @@ class Flow:
         value = arb(tape(sp.sympify(self.sigmas[j], strict=True)).run({self.time: arb(t)}))
         if not value > 0:
             message = f"expected a positive noise bound; got {quote(text)} of {quote(self.names[j])}; correct sigma"
-            raise DomainError(message, where=f"t = {write_rational(t)}")
+            raise DomainError(message, where=f"t = {t}")
         answer = value, put_number(text, self.time.name, t)
         if not self.sigmas[j].has(self.time):
             self.bounds[j] = answer
@@ -267,10 +267,6 @@ class Flow:
         """An entry of the functional where it is rational."""
         p = self.functional[k]
         return to_fmpq(p) if p.is_Rational else None
-
-    def functional_text(self, k: int) -> str:
-        """An entry of the functional as text."""
-        return to_text(self.functional[k])
 
     @cached_property
     def system(self) -> fmpq_mat | None:
@@ -330,7 +326,7 @@ class Flow:
             return h
         if self.closed_form is None:
             return None
-        span = f"({write_rational(t - now)})"
+        span = f"({t - now})"
         return [self.entry_text(h, [row[k] for row in self.closed_form], span) for k in range(len(h))]
 
     @staticmethod
@@ -360,7 +356,7 @@ def list_blocks(contents: ModelFile | BasisFile, names: Sequence[str]) -> list[T
 
 def put_number(text: str, name: str, value: fmpq) -> str:
     """The text with a number in place of a symbol."""
-    return re.sub(rf"\b{re.escape(name)}\b", f"({write_rational(value)})", text)
+    return re.sub(rf"\b{re.escape(name)}\b", f"({value})", text)
 
 
 def pivot_columns(rows: Sequence[Sequence[fmpq]]) -> list[int]:

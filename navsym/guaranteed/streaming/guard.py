@@ -28,7 +28,7 @@ from navsym.guaranteed.streaming.exchange import (
 from navsym.guaranteed.streaming.explanations import Combination, contradiction, explain_data
 from navsym.guaranteed.streaming.flow import BITS, Flow
 from navsym.guaranteed.streaming.memory import MOST_ROWS, STRIDE, Memory, Row
-from navsym.guaranteed.streaming.numbers import middle, read_exact, to_float, write_rational
+from navsym.guaranteed.streaming.numbers import read_exact, to_float
 from navsym.guaranteed.streaming.scarce import find_contradiction, solve_scarce
 from navsym.language.names import quote
 from navsym.models.model import Model, as_model
@@ -99,7 +99,7 @@ class Guard:
             raise DomainError(message, where="Guard: outliers")
         self.pace = None if step is None else read_exact(step, "Guard: step")
         if self.pace is not None and not self.pace > 0:
-            got = write_rational(self.pace)
+            got = str(self.pace)
             raise DomainError(f"expected a positive time step; got {got}; correct it", where="Guard: step")
         self.model = as_model(model, "Guard: model").with_values(**dict(values or {}))
         with precision(BITS):
@@ -264,8 +264,8 @@ class Guard:
         plan = self.plan or solve_scarce(self.flow, self.memory.rows[self.memory.first :], at)
         if plan is None:
             return Estimate(to_float(at), self.target, None, self.radius_kind)
-        value, count = middle(plan.value()), sum(not w.contains(0) for w in plan.weights)
-        if not isfinite(value) or not isfinite(middle(plan.upper)):
+        value, count = float(plan.value()), sum(not w.contains(0) for w in plan.weights)
+        if not isfinite(value) or not isfinite(float(plan.upper)):
             message = f"expected a target and a radius within the range of doubles; got {quote(self.target)} beyond it"
             raise TooLargeError(f"{message}; measure earlier, or take another unit", where=f"t = {to_float(at):.12g}")
         return Estimate(
@@ -425,7 +425,7 @@ class Guard:
         return Estimate(
             to_float(at),
             self.target,
-            0.0 if abs(centre) < (high - low) * ROUNDING else middle(centre),
+            0.0 if abs(centre) < (high - low) * ROUNDING else float(centre),
             "outliers",
             excluded=tuple(map(to_float, excluded)),
             others=tuple(tuple(times[e] for e in s) for s in found.others),

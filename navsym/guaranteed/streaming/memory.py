@@ -15,7 +15,7 @@ from navsym.core.errors import TooLargeError
 from navsym.guaranteed.search.cones import Cone
 from navsym.guaranteed.streaming.exchange import Cloud
 from navsym.guaranteed.streaming.flow import Flow, Together
-from navsym.guaranteed.streaming.numbers import to_float, write_rational
+from navsym.guaranteed.streaming.numbers import to_float
 
 MOST_ROWS = 200_000
 #: Steps whose transitions are one stride, see Flow.long_exponential.
@@ -98,7 +98,7 @@ class Memory:
             self.flow.stride = (at - self.times[-1]) * STRIDE
         rows = []
         for j, z, own in taken:
-            sigma, text = (arb(own), write_rational(own)) if own is not None else self.flow.sigma(j, at)
+            sigma, text = (arb(own), str(own)) if own is not None else self.flow.sigma(j, at)
             rows.append(Row(at, j, z, sigma, text, own))
         self.seen.update(row.j for row in rows)
         kept, n = vars(self).copy(), len(self.rows)

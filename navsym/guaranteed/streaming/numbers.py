@@ -1,4 +1,4 @@
-"""Numbers of the stream: exact rationals from text, integers, fractions and floats, and back to text."""
+"""Numbers of the stream: exact rationals from text, integers, fractions and floats."""
 
 from __future__ import annotations
 
@@ -6,7 +6,7 @@ from fractions import Fraction
 from numbers import Integral, Rational, Real
 from typing import Any
 
-from flint import arb, fmpq
+from flint import fmpq
 
 from navsym.core.arrays import without_units
 from navsym.core.errors import DomainError, ExpressionSyntaxError, NotFiniteError, TooLargeError, quote
@@ -70,16 +70,6 @@ def read_decimal(text: str, where: str) -> fmpq:
     return to_fmpq(Fraction(text))
 
 
-def write_rational(q: fmpq) -> str:
-    """``-3/10``, ``2``."""
-    return f"{int(q.p)}/{int(q.q)}" if q.q != 1 else str(int(q.p))
-
-
 def to_float(q: fmpq) -> float:
     """The double nearest to a rational number."""
     return int(q.p) / int(q.q)
-
-
-def middle(x: arb) -> float:
-    """The double nearest to the middle of a ball."""
-    return float(x)

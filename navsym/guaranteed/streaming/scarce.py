@@ -12,7 +12,6 @@ from navsym.guaranteed.streaming.estimate import Plan
 from navsym.guaranteed.streaming.exchange import Cloud, bounds_of, exchange
 from navsym.guaranteed.streaming.flow import Flow, in_row_space, pivot_columns
 from navsym.guaranteed.streaming.memory import Row, list_cones
-from navsym.guaranteed.streaming.numbers import middle
 
 #: With more rows than this, rational ranks cost more than they are worth.
 MOST = 400
@@ -67,8 +66,8 @@ def reduced_cloud(
     """Rows with their regressors at the pivots, and the measurements where they matter."""
     vectors = [arb_mat([[row[k] for k in columns]]) for row in table]
     sigma, offset = [row.sigma for row in rows], [arb(row.z) for row in rows] if data else []
-    scaled = [[middle(e / s) for e in v.entries()] for v, s in zip(vectors, sigma, strict=True)]
-    shifted = np.array([middle(z / s) for z, s in zip(offset, sigma, strict=True)]) if data else None
+    scaled = [[float(e / s) for e in v.entries()] for v, s in zip(vectors, sigma, strict=True)]
+    shifted = np.array([float(z / s) for z, s in zip(offset, sigma, strict=True)]) if data else None
     return Cloud(vectors, sigma, np.array(scaled), offset, shifted, cones=list_cones(flow, rows))
 
 

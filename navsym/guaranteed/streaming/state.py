@@ -15,7 +15,7 @@ from navsym.core.balls import precision
 from navsym.core.errors import DomainError, ExpressionSyntaxError
 from navsym.guaranteed.streaming.flow import BITS
 from navsym.guaranteed.streaming.memory import MOST_ROWS, Row
-from navsym.guaranteed.streaming.numbers import read_exact, write_rational
+from navsym.guaranteed.streaming.numbers import read_exact
 from navsym.language.files import name_file, write_text
 from navsym.language.jsonfile import check_document, read_json
 from navsym.language.names import quote, require_path
@@ -43,12 +43,12 @@ def write_state(guard: Guard, path: str | os.PathLike[str] | None) -> dict[str, 
         "step": write_optional(guard.pace),
         "epochs": guard.epochs,
         "reference": write_optional(memory.reference),
-        "stride": write_rational(guard.flow.stride),
+        "stride": str(guard.flow.stride),
         "gone": memory.gone,
         "since": write_optional(memory.since),
-        "times": [write_rational(t) for t in memory.times[memory.oldest :]],
+        "times": [str(t) for t in memory.times[memory.oldest :]],
         "counts": list(memory.counts[memory.oldest :]),
-        "rows": [[row.j, write_rational(row.z), write_optional(row.own)] for row in memory.rows[memory.first :]],
+        "rows": [[row.j, str(row.z), write_optional(row.own)] for row in memory.rows[memory.first :]],
         "alike": guard.alike,
         "pattern": [write_optional(step), [[j, write_optional(s)] for j, s in own]],
         "hint": {"basis": [i - memory.first for i in guard.basis], "signs": list(guard.signs)},
@@ -60,7 +60,7 @@ def write_state(guard: Guard, path: str | os.PathLike[str] | None) -> dict[str, 
 
 def write_optional(q: fmpq | None) -> str | None:
     """A rational number as text; None stays."""
-    return None if q is None else write_rational(q)
+    return None if q is None else str(q)
 
 
 def read_state(source: str | os.PathLike[str] | Mapping[str, Any]) -> Guard:
@@ -135,7 +135,7 @@ def read_row(guard: Guard, at: fmpq, entry: Any, where: str) -> Row:
     bound = read_optional(own, where)
     if bound is not None and not bound > 0:
         raise ValueError("sigma")
-    sigma, text = guard.flow.sigma(j, at) if bound is None else (arb(bound), write_rational(bound))
+    sigma, text = guard.flow.sigma(j, at) if bound is None else (arb(bound), str(bound))
     return Row(at, j, read_exact(z, f"{where}: rows"), sigma, text, bound)
 
 
