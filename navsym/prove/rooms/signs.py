@@ -203,7 +203,7 @@ def by_sum(goal: Any, sample: list[arb]) -> Iterator[Proof]:
         return
     values = [values_of(goal, term) for term in terms]
     if any(is_below(v) for v in values):
-        yield from separate([*flatten(goal.term)])
+        yield from separate(goal, [*flatten(goal.term)])
         yield from split_slack(goal)
         return
     strict = [k for k, v in enumerate(values) if v and all(x > 0 for x in v)]
@@ -212,28 +212,38 @@ def by_sum(goal: Any, sample: list[arb]) -> Iterator[Proof]:
         yield {"rule": "sum", "proofs": Holes(), "strict": k}
 
 
-def separate(terms: list[Term]) -> Iterator[Proof]:
+def separate(goal: Any, terms: list[Term]) -> Iterator[Proof]:
     """The terms of each symbol for themselves, where no two have one in common; what remains above 0 is strict.
 
-    A number below 0 is shared out so that each part is 0 where its symbols are.
+    A number is shared out so that each part is 0 where its symbols are, or at the end of their ranges where it is least.
     """
     groups: list[list[Term]] = []
     for term in terms:
         names = player.symbols_of(term)
         joined = [g for g in groups if names & player.symbols_of(join(g))]
         groups = [g for g in groups if g not in joined] + [[t for g in joined for t in g] + [term]]
-    moving = [g for g in groups if player.symbols_of(join(g))]
-    numbers = [t for g in groups if g not in moving for t in g]
-    if len(moving) > 1:
-        rest = join(numbers or [player.ZERO])
-        if player.value_of(rest, {}) < 0:
-            at_zero = {name: player.ZERO for name in player.symbols_of(join(terms))}
-            values = [player.substitute(join(g), at_zero) for g in moving]
-            moving = [[*g, player.negate(v)] for g, v in zip(moving, values, strict=True)]
-            rest = ("+", rest, *values)
-        whole = ("+", *(("*", player.ONE, part) for part in (*map(join, moving), rest)))
+    moving = [join(g) for g in groups if player.symbols_of(join(g))]
+    rest = join([t for g in groups if not player.symbols_of(join(g)) for t in g] or [player.ZERO])
+    is_below_zero = player.value_of(rest, {}) < 0
+    at_zero = dict.fromkeys(player.symbols_of(join(terms)), player.ZERO)
+    ways = [[player.substitute(part, at_zero) if is_below_zero else player.ZERO for part in moving]]
+    if (least := [least_at_ends(part, goal.box) for part in moving]) and None not in least:
+        ways.append(least)
+    for values in ways if len(moving) > 1 else ():
+        parts = [("+", part, player.negate(value)) for part, value in zip(moving, values, strict=True)]
+        whole = ("+", *(("*", player.ONE, part) for part in (*parts, ("+", rest, *values))))
         proof: Proof = {"rule": "sum", "proofs": Holes(), "strict": len(moving)}
         yield {"rule": "equal", "to": write_term(whole), "defined": Holes(), "proof": proof}
+
+
+def least_at_ends(term: Term, box: Any) -> Term | None:
+    """The lesser value of a term in one symbol at the ends of its range; None where these are no numbers."""
+    names = player.symbols_of(term)
+    ends = [end for name in names for end in box[name][:2]]
+    if len(names) != 1 or None in ends:
+        return None
+    values = [player.constant_of(player.substitute(term, dict.fromkeys(names, end))) for end in ends]
+    return None if None in values else player.number(min(values))
 
 
 def split_slack(goal: Any) -> Iterator[Proof]:
@@ -272,7 +282,8 @@ def by_corners(goal: Any, sample: list[arb]) -> Iterator[Proof]:
     ends = {v: goal.box[v.name] for v in sorted(expression.free_symbols, key=str)}
     closed = [v for v, limit in ends.items() if limit.low is not None and limit.high is not None]
     names = [v.name for v in closed if expression.is_polynomial(v) and sp.degree(expression, v) == 1]
-    for name in names:
+    apart = len(ends) > 1 and all(len(t.free_symbols) < 2 for t in sp.Add.make_args(sp.expand(expression)))
+    for name in names if not apart else ():  # corners double with each symbol, and the terms are separate
         yield {"rule": "corners", "symbols": [name], "proofs": Holes()}
 
 
