@@ -14,7 +14,6 @@ from dataclasses import dataclass, field
 from typing import Any, NoReturn
 
 from navsym.core.errors import EmptyError, ExpressionSyntaxError, NavsymError, ShapeError, TooLargeError
-from navsym.language.arithmetic import FACTORS, refuse_size
 from navsym.language.expression import LENGTH, Reader
 from navsym.language.names import FUNCTIONS, RESERVED, quote
 from navsym.language.printer import LOOSE, RAISED, TIGHT, WHOLE, LatexWriter, Text
@@ -183,23 +182,6 @@ class ValueReader(Reader):
         self.fail(at, expected, " and ".join(map(describe_size, sizes)), remedy, ShapeError)
 
     # -- grammar ----------------------------------------------------------------------
-
-    def product(self, minus: bool) -> Tree:
-        """Factors, inverted divisors, and what stands behind @; all of them bind from left to right."""
-        at, tokens = self.position, self.tokens
-        factors = self.signed(minus, head=True)
-        while (mark := tokens[self.position]) in ("*", "/", "@"):
-            mark_at = self.position
-            self.position += 1
-            factor = self.unary()
-            if mark == "@":
-                left = self.make(at, PRODUCT, *factors) if len(factors) != 1 else factors[0]
-                factors = [self.make(mark_at, "@", left, factor)]
-            else:
-                factors.append(factor if mark == "*" else self.make(mark_at, POWER, factor, MINUS_ONE))
-            if len(factors) > FACTORS:
-                self.refuse(mark_at, refuse_size(f"at most {FACTORS} factors in a product", "more"))
-        return self.make(at, PRODUCT, *factors) if len(factors) != 1 else factors[0]
 
     def atom(self) -> Tree:
         """A number, a name, a call, brackets or parentheses, with .T and indices behind it."""
