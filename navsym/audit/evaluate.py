@@ -39,7 +39,6 @@ from navsym.audit.values import (
     Variable,
     add,
     as_real,
-    cells_of,
     combine,
     constant_of,
     convert,
@@ -457,10 +456,10 @@ class Evaluator:
 
     def stack(self, values: list[Value]) -> Array:
         """Numbers as a vector, vectors as the rows of a matrix."""
-        shapes = {value.shape if isinstance(value, Array) else () for value in values}
+        shapes = {value.shape for value in values}
         forbid(len(shapes) != 1 or not values, "a list of different shapes")
         (shape,) = shapes
-        return Array((len(values), *shape), tuple(c for v in values for c in cells_of(v)))
+        return Array((len(values), *shape), tuple(c for v in values for c in v.cells))
 
     def linked(self, value: Part | None) -> Variable:
         """The variable to which a reference or pointer is a second name."""
@@ -624,9 +623,9 @@ class Evaluator:
         if is_python and is_alias and argument.name in changed:
             raise Unreadable(f"a view of an array that {function.name} may change", given.line)
         value = self.value(given)
-        if argument.number == "auto" and any(isinstance(c, Scalar) and c.number in LIMITS for c in cells_of(value)):
+        if argument.number == "auto" and any(isinstance(c, Scalar) and c.number in LIMITS for c in value.cells):
             raise Unreadable(f"an integer given to the template {function.name}, which may cut quotients", given.line)
-        shape = value.shape if isinstance(value, Array) else ()
+        shape = value.shape
         variable = Variable(argument.name, "list" if isinstance(value, List) else argument.number, shape)
         if isinstance(value, Unread):
             variable.all_unread = value

@@ -26,7 +26,7 @@ from navsym.audit.decide import (
     value_at,
 )
 from navsym.audit.questions import SENSES, Entry, Question
-from navsym.audit.values import Array, Scalar, cells_of, make_array, matrix_product, transpose
+from navsym.audit.values import Array, Scalar, make_array, matrix_product, transpose
 from navsym.claims.verdict import CERTIFIED, OPEN, PROVED, REFUTED, Status
 from navsym.core.errors import NavsymError
 from navsym.language.polynomials import to_polynomial
@@ -308,7 +308,7 @@ def read_noise(table: Table) -> Iterator[Reading]:
     sides = []
     for side in (0, 1):
         V = Array((m, n), tuple(Scalar(table.pair(k)[side]) for k in range(m * n)))
-        sides.append(cells_of(matrix_product(matrix_product(V, N), transpose(V, True))))
+        sides.append(matrix_product(matrix_product(V, N), transpose(V, True)).cells)
     upper = [i * m + j for i, j in combinations_with_replacement(range(m), 2)]
     pairs = [(sides[0][k].tree, sides[1][k].tree) for k in upper]  # type: ignore[union-attr]
     note = f"V N V' is equal for every {'' if is_full else 'diagonal '}covariance N"
