@@ -242,7 +242,7 @@ class Inference:
         step: Callable[[Tree, list[Units]], Units] | None = getattr(self, f"step_{STEPS.get(head, head)}", None)
         if step is not None:
             return step(part, inner)
-        if head in FUNCTIONS:
+        if head in (*FUNCTIONS, "erf", "floor"):
             self.plain(inner[0][0][0], part.args[0], head)
             return [[{}]]
         return inner[0] if inner else [[{}]]
@@ -301,10 +301,6 @@ class Inference:
         return [[None if cell is None else scale(cell, Fraction(1, 2))]]
 
     def step_sign(self, part: Tree, inner: list[Units]) -> Units:
-        return [[{}]]
-
-    def step_erf(self, part: Tree, inner: list[Units]) -> Units:
-        self.plain(inner[0][0][0], part.args[0], part.head)
         return [[{}]]
 
     def step_cov(self, part: Tree, inner: list[Units]) -> Units:
@@ -437,9 +433,7 @@ class Inference:
 #: Heads of numbers, if their parts are numbers, and those whose numbers have the unit of their neighbours.
 PLAIN = {NUMBER, "pi", SUM, PRODUCT, POWER, *FUNCTIONS}
 NEIGHBOURS = {SUM, "where", *ONLY_ALIKE, *ALIKE, *RELATIONS}
-STEPS = {
-    "T": "transpose", "@": "at", "conj": "abs", **dict.fromkeys((*ONLY_ALIKE, *ALIKE), "alike"), "floor": "erf",
-}  # fmt: skip
+STEPS = {"T": "transpose", "@": "at", "conj": "abs", **dict.fromkeys((*ONLY_ALIKE, *ALIKE), "alike")}
 
 
 def multiply(*cells: Cell) -> Cell:

@@ -399,17 +399,15 @@ class Climber(ClusterReader):
             number = self.numeral()
             self.open_braces()
             following = self.look() if number.head != "frac" else ""  # degrees end the argument
-            named = following[:1].isalpha() or following[1:] in GREEK or following == r"\pi"
-            if self.is_end() or following in MARKS or not (named or self.has_arguments(following)):
+            named = following[:1].isalpha() or following in (*FRACTIONS, r"\sqrt", r"\pi")
+            named |= following[:1] == "\\" and following[1:] in (*GREEK, *ACCENTS, *DOTS)
+            if self.is_end() or following in MARKS or not named:
                 return Part("call", (name, power, False, number), at)
             product = Part("*", (number, "", self.operand()), number.at)
             return Part("call", (name, power, False, product), at)
         if self.is_end():
             self.refuse(f"the argument of {name}")
         return Part("call", (name, power, False, self.operand()), at)
-
-    def has_arguments(self, text: str) -> bool:
-        return text in FRACTIONS or text == r"\sqrt" or (text[:1] == "\\" and (text[1:] in ACCENTS or text[1:] in DOTS))
 
     def listed(self) -> list[Part]:
         """Arguments in parentheses, commas between them."""

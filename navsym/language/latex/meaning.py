@@ -6,6 +6,7 @@ The outcome is text of the language of files. Where readers of the printed line 
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import Any
@@ -20,6 +21,8 @@ SCALAR: Shape = ()
 WAVES = ("sin", "cos", "tan")
 WRITE = "write parentheses"
 CALLING = ("(", "[", "{<")
+#: The methods of heads that are no words.
+METHODS = {"+": "terms", "*": "product", "^": "power", "-": "minus", "norm": "abs"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -129,16 +132,6 @@ class Explainer:
 
     def __init__(self, notation: Notation) -> None:
         self.notation = notation
-        self.methods = {
-            "+": self.explain_sum, "*": self.explain_product, "^": self.explain_power,
-            "frac": self.explain_fraction, "-": self.explain_minus, "sqrt": self.explain_root,
-            "abs": self.explain_length, "norm": self.explain_length, "floor": self.explain_floor,
-            "call": self.explain_call, "matrix": self.explain_matrix, "skew": self.explain_skew,
-            "dot": self.explain_dot, "diff": self.explain_derivative, "integral": self.explain_integral,
-            "sum": self.explain_series, "num": self.explain_number, "name": self.explain_name,
-            "limit": self.explain_limit, "inner": self.explain_inner, "cases": self.explain_cases,
-            "list": self.explain_list, "()": lambda part: self.explain(part.args[1]),
-        }  # fmt: skip
 
     def explain(self, part: Part) -> Term:
         """Text and shape of a part."""
@@ -152,7 +145,10 @@ class Explainer:
             raise Refusal(
                 part.at, "O(x^k) as the last term of the right side", "it elsewhere", "move it, or leave it out"
             )
-        return self.methods[part.head](part)
+        if part.head == "()":
+            return self.explain(part.args[1])
+        method: Callable[[Part], Term] = getattr(self, f"explain_{METHODS.get(part.head, part.head)}")
+        return method(part)
 
     def scalar(self, part: Part, what: str) -> Term:
         """A part that has to be a scalar."""
@@ -161,7 +157,7 @@ class Explainer:
             raise Refusal(part.at, f"a scalar {what}", say(term.shape), "correct the formula or a declaration")
         return term
 
-    def explain_number(self, part: Part) -> Term:
+    def explain_num(self, part: Part) -> Term:
         (text,) = part.args
         return Term(f"0{text}" if text[0] == "." else text)
 
@@ -174,7 +170,7 @@ class Explainer:
         term = self.explain(part.args[0])
         return Term(f"-{term.inside(PRODUCT)}", SUM, term.shape, "", term.is_quaternion)
 
-    def explain_sum(self, part: Part) -> Term:
+    def explain_terms(self, part: Part) -> Term:
         """A sum of terms of one shape."""
         terms = [self.explain(term.args[0] if term.head == "-" else term) for term in part.args]
         shape = next((term.shape for term in terms if "?" not in term.shape), terms[0].shape)
@@ -318,11 +314,11 @@ class Explainer:
             mark.at, "a transpose, a conjugate of a quaternion or a power", "another mark", "name it in [latex]"
         )
 
-    def explain_fraction(self, part: Part) -> Term:
+    def explain_frac(self, part: Part) -> Term:
         above, below = self.explain(part.args[0]), self.scalar(part.args[1], "as denominator")
         return Term(f"{above.inside(PRODUCT)}/{below.inside(POWER)}", PRODUCT, above.shape, "", above.is_quaternion)
 
-    def explain_root(self, part: Part) -> Term:
+    def explain_sqrt(self, part: Part) -> Term:
         inner = self.scalar(part.args[0], "under the root")
         if len(part.args) == 1:
             return Term(f"sqrt({inner.text})")
@@ -357,7 +353,7 @@ class Explainer:
             whole = term
         return whole
 
-    def explain_length(self, part: Part) -> Term:
+    def explain_abs(self, part: Part) -> Term:
         inner = self.explain(part.args[0])
         if not inner.shape and part.head == "abs":
             return Term(f"abs({inner.text})")
@@ -442,7 +438,7 @@ class Explainer:
         inner, order = self.explain(part.args[0]), part.args[1]
         return Term("dot_(" * order + inner.text + ")" * order, WHOLE, inner.shape, "", inner.is_quaternion)
 
-    def explain_derivative(self, part: Part) -> Term:
+    def explain_diff(self, part: Part) -> Term:
         body, variable, order, letter, _ = part.args
         if body.head in ("+", "*"):
             raise Refusal(body.at, "one factor under the derivative", "more", WRITE)
@@ -480,7 +476,7 @@ class Explainer:
         ends = [self.scalar(piece, "as end of the integral").text for piece in (start, end)]
         return Term(f"integral({inner.text}, {by.text}, {ends[0]}, {ends[1]})", WHOLE, inner.shape)
 
-    def explain_series(self, part: Part) -> Term:
+    def explain_sum(self, part: Part) -> Term:
         name, body, index, start, end = part.args
         if self.notation.shapes.get(index):
             raise Refusal(part.at, "a scalar as the index", f"the vector or matrix {index}", "rename it")

@@ -2,6 +2,7 @@ r"""Formulas of a document or of a string of LaTeX, read with declared symbols o
 
 from __future__ import annotations
 
+import contextlib
 import html
 import os
 import re
@@ -342,7 +343,9 @@ def read_block(block: Block, macros: Mapping[str, Macro], notation: Notation, li
     """The relations of one block."""
     try:
         text, places = expand_macros(block.text, macros) if macros else (block.text, list(range(len(block.text))))
-        relations = split_relations(text) if len(text) <= 20_000 else refuse_length(text)
+        if len(text) > 20_000:
+            raise Refusal(0, "a formula of at most 20000 characters", f"{len(text)}", "split it")
+        relations = split_relations(text)
     except Refusal as refusal:
         text, places = block.text, list(range(len(block.text)))
         side = Side(text, 0)
@@ -353,13 +356,6 @@ def read_block(block: Block, macros: Mapping[str, Macro], notation: Notation, li
         yield read_relation(
             relation, [block.start + place for place in [*places, len(block.text)]], notation, lines, block
         )
-
-
-def refuse_length(text: str) -> list[Relation]:
-    """A block that is too long for a formula."""
-    side = Side(text[:200], 0)
-    trouble = Refusal(0, "a formula of at most 20000 characters", f"{len(text)}", "split it")
-    return [Relation(side, "", side, 0, trouble)]
 
 
 def read_relation(relation: Relation, places: list[int], notation: Notation, lines: Lines, block: Block) -> ReadFormula:
@@ -466,15 +462,11 @@ def refuse_units(text: str, notation: Notation) -> None:
         raise Refusal(comma.start(), "a number with a point or without", got, "write it so")
 
 
-class shifted:
+@contextlib.contextmanager
+def shifted(start: int) -> Iterator[None]:
     """Refusals inside get the place of the whole block."""
-
-    def __init__(self, start: int) -> None:
-        self.start = start
-
-    def __enter__(self) -> None:
-        return None
-
-    def __exit__(self, kind: Any, error: BaseException | None, trace: Any) -> None:
-        if isinstance(error, Refusal):
-            error.at += self.start
+    try:
+        yield
+    except Refusal as refusal:
+        refusal.at += start
+        raise
