@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
-from typing import Any
+from typing import NoReturn
 
 from navsym.language.latex.notation import ACCENTS, DOTS
 from navsym.language.latex.parts import Refusal
@@ -39,7 +39,7 @@ class ClusterReader:
     def look_at(self, place: int) -> str:
         return self.tokens[place].text if place < len(self.tokens) else ""
 
-    def refuse(self, expected: str, at: int | None = None) -> Any:
+    def refuse(self, expected: str, at: int | None = None) -> NoReturn:
         """Refuse the token at hand."""
         here = self.tokens[self.place].at if self.place < len(self.tokens) else self.end
         raise Refusal(here if at is None else at, expected, self.look()[:40] or "the end", "write it another way")

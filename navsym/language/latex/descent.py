@@ -85,7 +85,6 @@ class Descent(SymbolReader):
         noad = self.noad
         if noad is None:
             self.refuse("a number, a name or a group", "complete the formula")
-            raise AssertionError
         named = self.spelling()
         if named is not None:
             part, last = named
@@ -165,7 +164,6 @@ class Descent(SymbolReader):
         wanted = "cases" if has_cases else PAIRS[opening.value]
         if closing is None or closing.kind not in ("close", "bar") or closing.value != wanted:
             self.refuse(f"the bracket that closes {self.text[opening.at : opening.end]}", "close it")
-            raise AssertionError
         self.place += 1
         if len(items) > 1 or opening.value == "langle":
             return self.close_list(opening, items, closing, crossed)
@@ -446,7 +444,6 @@ class Descent(SymbolReader):
         name = self.base(variable) if variable else None
         if variable is None or name is None or variable.sup:
             self.refuse("the variable of the integral", "write one name behind d")
-            raise AssertionError
         by = self.resolve(variable, name) or self.variable(variable, name)
         self.bound = kept
         self.place += 1

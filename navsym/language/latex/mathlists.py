@@ -237,7 +237,7 @@ class Builder:
         if len(inner) == 1 and any(getattr(noad, side) and getattr(last, side) for side in ("sub", "sup")):
             closing = Noad("close", "}", noad.end, noad.end, sub=noad.sub, sup=noad.sup)
             return [Noad("open", "{", noad.at, noad.at + 1), last, closing]
-        closed = len(inner) > 1 and inner[0].kind == "open" and last.kind == "close" and not closes_early(inner)
+        closed = len(inner) > 1 and inner[0].kind == "open" and match_bracket(inner, 0) == len(inner) - 1
         twice = any(getattr(noad, side) and getattr(last, side) for side in ("sub", "sup"))
         opens = any(n.kind in ("open", "close", "bar") for n in inner)
         if (len(inner) > 1 and not closed and (not noad.bold or opens)) or twice:
@@ -366,11 +366,11 @@ def stands_apart(beside: list[Noad], bracket: str, signs: str) -> bool:
     return all(n.kind in (bracket, "bar") or n.is_sign(*signs, *"=<>,;.") for n in beside)
 
 
-def closes_early(noads: list[Noad]) -> bool:
-    """True when the bracket at the beginning closes before the end."""
+def match_bracket(noads: list[Noad], place: int) -> int:
+    """Place of the bracket that closes the one here; -1 where there is none."""
     depth = 0
-    for place, noad in enumerate(noads):
-        depth += (noad.kind == "open") - (noad.kind == "close")
-        if depth == 0 and place + 1 < len(noads):
-            return True
-    return False
+    for at in range(place, len(noads)):
+        depth += (noads[at].kind == "open") - (noads[at].kind == "close")
+        if depth == 0:
+            return at
+    return -1

@@ -5,9 +5,9 @@ from __future__ import annotations
 import re
 from copy import copy
 from dataclasses import replace
-from typing import Any, Self
+from typing import Any, ClassVar, NoReturn, Self
 
-from navsym.language.latex.mathlists import Noad, is_same, is_same_list, list_spelling
+from navsym.language.latex.mathlists import Noad, is_same, is_same_list, list_spelling, match_bracket
 from navsym.language.latex.notation import CALLS, GREEK, SENTENCE, Notation
 from navsym.language.latex.parts import Part, Refusal
 
@@ -18,6 +18,10 @@ LEAD = re.compile(r"^(?:\\[,;:! ]|\\q?quad(?![A-Za-z])|~|\s)+")
 
 class SymbolReader:
     """A list of symbols, and the place in it; the grammar is added by those who inherit."""
+
+    expression: ClassVar[Any]
+    call: ClassVar[Any]
+    exponent: ClassVar[Any]
 
     def __init__(self, text: str, notation: Notation, noads: list[Noad], faces: dict[str, set[bool]]) -> None:
         self.text, self.notation, self.noads, self.faces = text, notation, noads, faces
@@ -50,7 +54,7 @@ class SymbolReader:
     def noad(self) -> Noad | None:
         return self.noads[self.place] if self.place < len(self.noads) else None
 
-    def refuse(self, expected: str, remedy: str) -> Any:
+    def refuse(self, expected: str, remedy: str) -> NoReturn:
         """Refuse the symbol at hand."""
         noad = self.noad
         at = noad.at if noad else self.noads[-1].end if self.noads else len(self.text)
@@ -303,18 +307,6 @@ class SymbolReader:
             or (noad.is_command("pi"))
         )
 
-    def expression(self) -> Part:
-        """Terms with their signs."""
-        raise NotImplementedError
-
-    def call(self, name: str) -> Part:
-        """A function at its argument."""
-        raise NotImplementedError
-
-    def exponent(self, sup: list[Noad]) -> Part:
-        """A superscript."""
-        raise NotImplementedError
-
 
 def transpose_mark(noad: Noad) -> str:
     """``T`` for the letter, ``top`` for what is nothing but a transpose."""
@@ -331,12 +323,7 @@ def find_closing(noads: list[Noad], place: int) -> int:
     """Place of the parenthesis that closes the plain one here; -1 where there is none."""
     if place >= len(noads) or noads[place].kind != "open" or noads[place].value != "(" or noads[place].has_scripts:
         return -1
-    depth = 0
-    for at in range(place, len(noads)):
-        depth += (noads[at].kind == "open") - (noads[at].kind == "close")
-        if depth == 0:
-            return at
-    return -1
+    return match_bracket(noads, place)
 
 
 def transposed_value(wanted: tuple[Noad, ...], found: list[Noad]) -> Noad | None:
