@@ -84,7 +84,7 @@ class Reader(SourceReader):
     hidden : first byte of a name that stands in the tree as a number, since the grammar would take it for a type
     """
 
-    HEAD = "int a_ = "
+    HEAD, VALUE = "int a_ = ", ("declaration", "declarator", "value")
     REALS = OPEN
     OPEN = (*SourceReader.OPEN, "while_statement", "do_statement", "switch_statement", "compound_statement")
 
@@ -117,10 +117,6 @@ class Reader(SourceReader):
             root = SourceReader.parse(self, bytes(text))
             self.nodes = [*descend(root)]
         return root
-
-    @staticmethod
-    def find_value(node: Any) -> Any:
-        return field_of(field_of(node, "declarator"), "value") if node.type == "declaration" else None
 
     region_of = staticmethod(region_of)
 

@@ -51,7 +51,7 @@ class Reader(SourceReader):
     computed : members that a class of the file computes when they are read or set; ANY where it may be every one
     """
 
-    HEAD, TAIL = "(", ")"
+    HEAD, TAIL, VALUE = "(", ")", ("expression_statement", "")
 
     rebound: set[str] = field(default_factory=set)
     changed: set[str] = field(default_factory=set)
@@ -61,10 +61,6 @@ class Reader(SourceReader):
     made: set[str] = field(default_factory=set)
     computed: set[str] = field(default_factory=set)
     OPERATORS = OPERATORS | {sign: ("op", sign) for sign in ("//", "@", "**")}
-
-    @staticmethod
-    def find_value(node: Any) -> Any:
-        return named(node)[0] if node.type == "expression_statement" else None
 
     def read_file(self, root: Any) -> None:
         """The functions and constants of a source in Python."""

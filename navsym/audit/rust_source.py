@@ -60,16 +60,12 @@ class Reader(SourceReader):
     defined      : the types and macros of the file
     """
 
-    HEAD = "const A: f64 = "
+    HEAD, VALUE = "const A: f64 = ", ("const_item", "value")
     REALS = OPEN_TYPES
     OPEN = ("if_expression", "for_expression", "block", "expression_statement")
 
     foreign: set[str] = field(default_factory=set)
     defined: set[str] = field(default_factory=set)
-
-    @staticmethod
-    def find_value(node: Any) -> Any:
-        return field_of(node, "value") if node.type == "const_item" else None
 
     def read_file(self, root: Any) -> None:
         """Functions, constants and fields, also inside modules and implementations."""

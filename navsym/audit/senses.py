@@ -21,7 +21,7 @@ from navsym.audit.decide import (
     decide_entry,
     differentiate,
     draw_points,
-    holds_at,
+    list_values,
     measure,
     value_at,
 )
@@ -350,17 +350,13 @@ def find_values(table: Table) -> tuple[Balls, Balls] | None:
     box = {name: player.read_range(table.scope.ranges[name]) for name in names}
     terms = [player.parse(print_tree(tree)) for tree in sides]
     states = [x.args[0] for x in table.by if x.args[0] in box]
-    for point in draw_points(box, table.scope):
-        point |= dict.fromkeys(states, point[states[0]]) if states else {}
-        if not all(player.is_inside(("number", value), box[name]) for name, value in point.items()):
-            continue
-        place = {name: player.Jet(player.arb(value)) for name, value in point.items()}
-        balls = [player.value_of(term, place) for term in terms]
-        is_inside = all(value_at(relation, point) == 0 for relation in table.scope.relations)
-        is_inside &= all(holds_at(condition, place) for condition in table.scope.conditions)
-        if is_inside and all(ball.is_finite() for ball in balls):
-            code, expected = ([balls[2 * (i * n) + side :][: 2 * n : 2] for i in range(n)] for side in (0, 1))
-            return code, expected
+    drawn = draw_points(box, table.scope)
+    points = (point | dict.fromkeys(states, point[states[0]]) if states else point for point in drawn)
+    points = (p for p in points if all(player.is_inside(("number", value), box[name]) for name, value in p.items()))
+    points = (p for p in points if all(value_at(relation, p) == 0 for relation in table.scope.relations))
+    for _, balls in list_values(terms, points, table.scope.conditions):
+        code, expected = ([balls[2 * (i * n) + side :][: 2 * n : 2] for i in range(n)] for side in (0, 1))
+        return code, expected
     return None
 
 
