@@ -311,10 +311,6 @@ def rotation_of(unit: Unit, value: Value) -> Value:
     return transpose(Array((3, 3), tuple(cells)), True)
 
 
-def transposed(unit: Unit, value: Value) -> Value:
-    return transpose(value, unit.rules.matrix)
-
-
 def as_another(unit: Unit, value: Value) -> Value:
     """A number or a vector in another type; a matrix of nalgebra takes nested arrays as its columns."""
     is_matrix = isinstance(value, Array) and len(value.shape) != 1
@@ -347,7 +343,8 @@ TABLE: tuple[Row, ...] = (
     ("ones", (1, 2), ARRAYS, "", lambda unit, *values: filled(sizes_of(unit, *values), 1)),
     ("array asarray", (1,), ARRAYS, "", lambda unit, value: value),
     ("copy", (1,), ARRAYS, ALL, lambda unit, value: value), ("eval", (1,), "", OTHERS, lambda unit, value: value),
-    ("transpose", (1,), ARRAYS, ALL, transposed), ("T", (1,), "", ALL, transposed),
+    *((name, (1,), where, ALL, lambda unit, value: transpose(value, unit.rules.matrix))
+      for name, where in (("transpose", ARRAYS), ("T", ""))),
     ("norm", (1,), ARRAYS, OTHERS, norm_of), ("linalg.norm", (1,), ARRAYS, "", norm_of),
     ("squaredNorm norm_squared", (1,), "", OTHERS, lambda unit, value: square_sum(value)),
     ("normalized unit", (1,), "", OTHERS, normalize), ("normalize", (1,), "", "c matlab rust", normalize),

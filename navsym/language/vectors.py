@@ -466,6 +466,17 @@ FORMS = {
     "qmul": r"{0} \otimes {1}",
     "dot_": r"\frac{{d}}{{dt}} {0}",
     "floor": r"\left\lfloor {0} \right\rfloor",
+    "eye": r"\mathbf{{I}}_{{{0}}}",
+    "zeros": r"\mathbf{{0}}_{{{0} \times {1}}}",
+    "where": r"\begin{{cases}}{1} & {0} \\ {2} & \text{{otherwise}}\end{{cases}}",
+}
+#: Forms that enclose their parts by signs of their own.
+CLOSED = ("norm", "skew", "floor", "eye", "zeros", "where")
+BOUND = {
+    "integral": r"\int_{{{2}}}^{{{3}}} {0} \, d{1}",
+    "sum": r"\sum_{{{1} = {2}}}^{{{3}}} {0}",
+    "product": r"\prod_{{{1} = {2}}}^{{{3}}} {0}",
+    "limit": r"\lim_{{{1} \to {2}}} {0}",
 }
 
 
@@ -495,35 +506,17 @@ class ValueWriter(LatexWriter):
             sign = {"!=": r"\ne", "<=": r"\le", ">=": r"\ge"}.get(part.head, part.head)
             return Text(f"{texts[0]} {sign} {texts[1]}", LOOSE)
         if part.head in FORMS:
-            closed = part.head in ("norm", "skew", "floor")
+            closed = part.head in CLOSED
             written = FORMS[part.head].format(*(self.enclose(text, LOOSE if closed else RAISED) for text in inner))
             return Text(written, WHOLE if closed else TIGHT)
-        if part.head == "eye":
-            return Text(rf"\mathbf{{I}}_{{{texts[0]}}}", WHOLE)
-        if part.head == "zeros":
-            return Text(rf"\mathbf{{0}}_{{{texts[0]} \times {texts[1]}}}", WHOLE)
-        if part.head in BINDERS:
-            return self.spell_bound(part.head, texts, self.enclose(inner[0], TIGHT))
-        if part.head == "where":
-            return Text(
-                rf"\begin{{cases}}{texts[1]} & {texts[0]} \\ {texts[2]} & \text{{otherwise}}\end{{cases}}", WHOLE
-            )
+        if part.head in BOUND:
+            return Text(BOUND[part.head].format(self.enclose(inner[0], TIGHT), *texts[1:]), LOOSE)
         if part.head == "diff":
             order = "" if len(texts) < 3 else f"^{{{texts[2]}}}"
             return Text(
                 rf"\frac{{\partial{order}}}{{\partial {texts[1]}{order}}} {self.enclose(inner[0], RAISED)}", TIGHT
             )
         return super().spell(part, inner)
-
-    @staticmethod
-    def spell_bound(head: str, texts: list[str], inside: str) -> Text:
-        """A function with a variable of its own."""
-        variable, low, high = texts[1], texts[2], texts[-1]
-        if head == "integral":
-            return Text(rf"\int_{{{low}}}^{{{high}}} {inside} \, d{variable}", LOOSE)
-        if head == "limit":
-            return Text(rf"\lim_{{{variable} \to {low}}} {inside}", LOOSE)
-        return Text(rf"\{'sum' if head == 'sum' else 'prod'}_{{{variable} = {low}}}^{{{high}}} {inside}", LOOSE)
 
 
 def print_value_latex(tree: Tree) -> str:

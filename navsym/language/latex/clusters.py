@@ -33,8 +33,7 @@ class ClusterReader:
 
     def look(self, ahead: int = 0) -> str:
         """The text of a token, nothing behind the end."""
-        at = self.place + ahead
-        return self.tokens[at].text if at < len(self.tokens) else ""
+        return self.look_at(self.place + ahead)
 
     def look_at(self, place: int) -> str:
         return self.tokens[place].text if place < len(self.tokens) else ""

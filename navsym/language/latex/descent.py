@@ -150,7 +150,9 @@ class Descent(SymbolReader):
             self.bars.append(opening.value)
         kept, self.integrals = self.integrals, 0
         outer, self.bars = self.bars, self.bars if is_bar and opening.kind == "bar" else []
-        has_cases = self.opens_cases(opening)
+        noad = self.noad
+        is_array = noad is not None and noad.kind == "env" and noad.value[0] == "array" and not noad.has_scripts
+        has_cases = opening.value == "{<" and is_array
         items = [self.cases(self.noads[self.place])] if has_cases else [self.expression()]
         while opening.value in ("(", "[", "langle") and self.noad is not None and self.noad.is_sign(","):
             self.place += 1
@@ -468,12 +470,6 @@ class Descent(SymbolReader):
         cells = [self.inside(cell) for cell in noad.args]
         part = Part("matrix", (len(widths), *cells), noad.at)
         return Part("call", ("det", None, True, part), noad.at) if kind == "vmatrix" else part
-
-    def opens_cases(self, opening: Noad) -> bool:
-        """True for a brace and one array in it."""
-        noad = self.noad
-        is_array = noad is not None and noad.kind == "env" and noad.value[0] == "array" and not noad.has_scripts
-        return opening.value == "{<" and is_array
 
     def cases(self, noad: Noad) -> Part:
         """Values with their conditions, the last one for all the rest."""

@@ -15,9 +15,15 @@ from navsym.language.latex.notation import ACCENTS, BOLD, DOTS, SETTINGS, SIZES,
 from navsym.language.latex.parts import DEPTH, Refusal
 
 MATRICES = ("matrix", "pmatrix", "bmatrix", "Bmatrix", "vmatrix", "smallmatrix", "array", "cases")
-OPENERS = {"lvert": "|", "lVert": "||", "lfloor": "floor", "lbrack": "[", "lparen": "(", "langle": "langle", "{": "{<"}
-CLOSERS = {"rvert": "|", "rVert": "||", "rfloor": "floor", "rbrack": "]", "rparen": ")", "rangle": "langle", "}": ">}"}
 BRACKETS = {"(": ("open", "("), ")": ("close", ")"), "[": ("open", "["), "]": ("close", "]"), "|": ("bar", "|")}
+#: The same of commands.
+DELIMITERS = {
+    "lvert": ("open", "|"), "lVert": ("open", "||"), "lfloor": ("open", "floor"), "lbrack": ("open", "["),
+    "lparen": ("open", "("), "langle": ("open", "langle"), "{": ("open", "{<"), "rvert": ("close", "|"),
+    "rVert": ("close", "||"), "rfloor": ("close", "floor"), "rbrack": ("close", "]"), "rparen": ("close", ")"),
+    "rangle": ("close", "langle"), "}": ("close", ">}"), "|": ("bar", "||"), "Vert": ("bar", "||"),
+    "vert": ("bar", "|"),
+}  # fmt: skip
 
 
 @dataclass(slots=True)
@@ -276,13 +282,8 @@ class Builder:
             return [Noad("group", None, at, name_end, bold, ([],))]
         if name in ("left", "right"):
             return [Noad("side", name, at, name_end)]
-        if name in OPENERS or name in CLOSERS:
-            table, kind = (OPENERS, "open") if name in OPENERS else (CLOSERS, "close")
-            return [Noad(kind, table[name], at, name_end)]
-        if name in ("|", "Vert"):
-            return [Noad("bar", "||", at, name_end)]
-        if name == "vert":
-            return [Noad("bar", "|", at, name_end)]
+        if name in DELIMITERS:
+            return [Noad(*DELIMITERS[name], at, name_end)]
         given = [arg for arg in (node.nodeargd.argnlist if node.nodeargd else ()) if arg is not None]
         if name in WORDS and given:
             word = self.text[given[0].pos : given[0].pos + given[0].len].strip("{} ")

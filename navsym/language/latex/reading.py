@@ -3,7 +3,6 @@ r"""Formulas of a document or of a string of LaTeX, read with declared symbols o
 from __future__ import annotations
 
 import contextlib
-import html
 import os
 import re
 from collections.abc import Iterator, Mapping
@@ -13,6 +12,7 @@ from typing import Any
 
 from navsym.core.answers import Answer
 from navsym.core.errors import EmptyError, ExpressionSyntaxError, TooLargeError
+from navsym.core.tables import Table
 from navsym.language.files import name_file, read_text
 from navsym.language.latex.climbing import climb
 from navsym.language.latex.descent import descend
@@ -130,12 +130,9 @@ class Reading(Answer):
     def __repr__(self) -> str:
         return f"<{len(self.read)} of {len(self.formulas)} formulas read>"
 
-    def _repr_html_(self) -> str:
-        rows = "".join(
-            f"<tr><td>{f.line}</td><td>{f.status}</td><td><code>{html.escape(f.text or f.why or '')}</code></td></tr>"
-            for f in self.formulas
-        )
-        return f"<table><thead><tr><th>line</th><th></th><th>reading</th></tr></thead><tbody>{rows}</tbody></table>"
+    def table(self) -> Table:
+        """What a notebook shows."""
+        return ("line", "", "reading"), [(f.line, f.status, f.text or f.why or "") for f in self.formulas]
 
     def document(self) -> dict[str, Any]:
         """The answer as plain data: the JSON document of ``navsym read``."""
