@@ -370,14 +370,11 @@ def bound_by(node: Any) -> list[str]:
 def is_numeric(node: Any) -> bool:
     """True for an import of numbers and their functions only, under the names by which they are known."""
     module = field_of(node, "module_name")
-    return (
-        text_of(module) in MODULES
-        if module is not None
-        else all(
-            text_of(field_of(name, "name") or name) in NUMERIC or text_of(field_of(name, "alias") or name) not in NAMES
-            for name in node.children_by_field_name("name")
-        )
-    )
+    if module is not None:
+        return text_of(module) in MODULES
+    names = node.children_by_field_name("name")
+    pairs = [[text_of(field_of(name, key) or name) for key in ("name", "alias")] for name in names]
+    return all(meant in NUMERIC or own not in NAMES for meant, own in pairs)
 
 
 def may_be_given(node: Any) -> bool:

@@ -74,18 +74,15 @@ class Source:
         reading, unit = self.read(), self.unit
         names = {name.split(".")[-1] for f in reading.functions for name in names_in(*f.body)}
         extents = [f.extent for f in reading.functions]
-        near = (
-            (word, any(a <= at < b for a, b in extents) or name.split(".")[-1] in names)
-            for word, at, name in unit.taken
-        )
+
+        def is_near(at: int, name: str) -> bool:
+            return name.split(".")[-1] in names or any(a <= at < b for a, b in extents)
+
         apart = {name for pair in reading.apart if not pair & self.distinct for name in pair}
         scalars = reading.scalars - {self.names.spellings.get(n, n) for n in self.names.declared}
-        several = {
-            "taken as real: ": {word for word, is_near in near if is_near},
-            "sizes: scalar: ": scalars,
-            "apart in memory: ": apart,
-            "not overridden: ": reading.kept,
-        }
+        real = {word for word, at, name in unit.taken if is_near(at, name)}
+        several = {"taken as real: ": real, "sizes: scalar: ": scalars, "apart in memory: ": apart}
+        several["not overridden: "] = reading.kept
         return [head + ", ".join(sorted(words)) for head, words in several.items() if words]
 
     def symbol(self, spelling: str) -> Tree:

@@ -118,11 +118,8 @@ def find_odd(node: Any) -> str:
     known = SLOTS.get(node.type, frozenset())
     for i, child in enumerate(node.children):
         slot = node.field_name_for_child(i) or child.type.replace("\n", "NL")
-        if (
-            child.type not in COMMENTS
-            and slot not in known
-            and not ("*" in known and child.is_named and slot == child.type)
-        ):
+        is_known = slot in known or ("*" in known and child.is_named and slot == child.type)
+        if child.type not in COMMENTS and not is_known:
             return str(child.type).replace("_", " ")
         if child.type in INNER and (odd := find_odd(child)):
             return odd

@@ -178,10 +178,8 @@ def refuse(part: object) -> NoReturn:
         raise float_error(float(part), "")
     kind = type(part).__name__
     text = quote(str(part)) if not isinstance(part, str) else quote(part)
-    raise ExpressionSyntaxError(
-        f"expected numbers, names, + - * / **, pi and the functions of the language; got {kind} {text}; "
-        "rewrite it exactly in these terms"
-    )
+    expected = "numbers, names, + - * / **, pi and the functions of the language"
+    raise ExpressionSyntaxError(f"expected {expected}; got {kind} {text}; rewrite it exactly in these terms")
 
 
 def float_error(value: float, where: str) -> NavsymError:

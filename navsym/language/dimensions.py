@@ -248,10 +248,8 @@ class Inference:
 
     def each(self, part: Tree, inner: list[Units], what: str) -> Units:
         """Entry by entry the one unit of all parts."""
-        return [
-            [self.total(zip((u[i][j] for u in inner), part.args, strict=True), what) for j in range(len(inner[0][0]))]
-            for i in range(len(inner[0]))
-        ]
+        cells = [[*zip(*rows, strict=False)] for rows in zip(*inner, strict=False)]
+        return [[self.total(zip(cell, part.args, strict=True), what) for cell in row] for row in cells]
 
     def product(self, inner: list[Units]) -> Units:
         """Numbers and at most one array."""
@@ -317,14 +315,12 @@ class Inference:
 
     def times(self, A: Units, B: Units, part: Tree) -> Units:
         """A matrix product, whose every entry is a sum."""
+
+        def cell(row: list[Cell], column: list[Cell]) -> Cell:
+            return self.total(((multiply(a, b), part) for a, b in zip(row, column, strict=True)), "terms")
+
         columns = transpose(B)
-        return [
-            [
-                self.total(((multiply(a, b), part) for a, b in zip(row, column, strict=True)), "terms")
-                for column in columns
-            ]
-            for row in A
-        ]
+        return [[cell(row, column) for column in columns] for row in A]
 
     def step_cross(self, part: Tree, inner: list[Units]) -> Units:
         self.alike(inner[1], part.args[1])

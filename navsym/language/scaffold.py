@@ -255,12 +255,8 @@ def append_claim(source: str, new: NewClaim) -> str:
 
 def append_stated(source: str, new: NewClaim, known: set[str]) -> str:
     """The source of a module with one more claim in the words of files."""
-    block = STATED.format(
-        arguments=new.arguments,
-        function=name_function(new.number, known),
-        title=write_docstring(new.title),
-        call=write_call(new.call),
-    )
+    function, title = name_function(new.number, known), write_docstring(new.title)
+    block = STATED.format(arguments=new.arguments, function=function, title=title, call=write_call(new.call))
     if "state_formula" not in known:
         first = next(n for n in ast.parse(source).body if isinstance(n, ast.ImportFrom) and n.module == "navsym.claims")
         lines = source.splitlines(keepends=True)
@@ -373,10 +369,8 @@ def parse_module(source: str) -> ast.Module:
     except SyntaxError as error:
         raise DomainError(f"expected a derivation module; got a syntax error at line {error.lineno}") from error
     if not {"PAPER", "sp", "claim", "Equation", "Status"} <= names_at_top(tree):
-        raise DomainError(
-            "expected a module made by navsym new-paper, with PAPER, sp, claim, Equation and Status at its top; "
-            "got another; add the imports"
-        )
+        expected = "a module made by navsym new-paper, with PAPER, sp, claim, Equation and Status at its top"
+        raise DomainError(f"expected {expected}; got another; add the imports")
     return tree
 
 

@@ -358,12 +358,8 @@ class Climber(ClusterReader):
         sub, sup, self.place = self.cluster_scripts(self.place)
         if sub:
             size = "".join(t.text for t in sub).split(r"\times")
-            if (
-                text != "0"
-                or not first.bold
-                or len(size) != 2
-                or not all(re.fullmatch("[1-9][0-9]?|[a-z]", s) for s in size)
-            ):
+            is_sized = len(size) == 2 and all(re.fullmatch("[1-9][0-9]?|[a-z]", s) for s in size)
+            if text != "0" or not first.bold or not is_sized:
                 self.refuse("a number without subscript", first.at)
             return self.raised(Part("zeros", tuple(size), first.at), sup)
         if [t.text for t in sup or ()] == [r"\circ"]:

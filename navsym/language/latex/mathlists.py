@@ -96,13 +96,10 @@ def load_context() -> Any:
         raise MissingEngineError(message, where="read") from None
     context = LatexContextDb()
     one = (*BOLD, *(WORDS - {"rm"}), *ACCENTS, *DOTS)
-    macros = [MacroSpec(name, "{") for name in one] + [
-        MacroSpec(name, "{{") for name in ("frac", "dfrac", "tfrac", "cfrac")
-    ]
+    given = {**dict.fromkeys(one, "{"), **dict.fromkeys(("frac", "dfrac", "tfrac", "cfrac"), "{{"), "sqrt": "[{"}
+    macros = [MacroSpec(name, arguments) for name, arguments in given.items()]
     arrays = [EnvironmentSpec(name, "{" if name == "array" else "") for name in MATRICES]
-    context.add_context_category(
-        "formulas", macros=[*macros, MacroSpec("sqrt", "[{")], environments=arrays, specials=[]
-    )
+    context.add_context_category("formulas", macros=macros, environments=arrays, specials=[])
     context.set_unknown_macro_spec(MacroSpec(""))
     context.set_unknown_environment_spec(EnvironmentSpec(""))
     return context
@@ -150,6 +147,7 @@ class Builder:
         done: list[Noad] = []
         side = ""
         for place, unit in enumerate(units):
+            is_second = unit.is_bar and any(n.is_bar and n.end == unit.at for n in done[-1:])
             if side:
                 self.attach(done[-1], side, unit, units[place + 1 : place + 2])
                 side = ""
@@ -163,11 +161,7 @@ class Builder:
                 if not primed or not takes_script(done[-1]):
                     raise Refusal(unit.at, "a name before its primes", "'", "write the name in [latex]")
                 done[-1].sup, done[-1].end = [*(done[-1].sup or []), prime], unit.end
-            elif (
-                unit.is_bar
-                and any(n.is_bar and n.end == unit.at for n in done[-1:])
-                and sum(n.is_bar for n in done) % 2
-            ):
+            elif is_second and sum(n.is_bar for n in done) % 2:
                 done[-1].value, done[-1].end = "||", unit.end  # but |a||b| has bars that close and open
             else:
                 done.append(unit)
@@ -292,16 +286,8 @@ class Builder:
         args = tuple(self.build(nodes, bold or name in BOLD) for nodes in inner)  # in braces, or one symbol
         if name in BOLD:
             return [Noad("group", None, at, end, True, args)]
-        return [
-            Noad(
-                "arg" if args else "cmd",
-                "frac" if name in ("dfrac", "tfrac", "cfrac") else name,
-                at,
-                end if args else name_end,
-                bold,
-                args,
-            )
-        ]
+        name = "frac" if name in ("dfrac", "tfrac", "cfrac") else name
+        return [Noad("arg", name, at, end, bold, args) if args else Noad("cmd", name, at, name_end, bold)]
 
     def make_environment(self, node: Any, at: int, end: int) -> Noad:
         """A matrix: its entries as lists, and the length of each row as its value."""

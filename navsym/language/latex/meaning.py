@@ -402,12 +402,8 @@ class Explainer:
             return Term(f"rot({text})", WHOLE, ("3", "3"))
         if name == "E" and len(shapes) == 1:
             return Term(f"E({text})", WHOLE, shapes[0])
-        if (
-            name == "cov"
-            and len({shape[1:] for shape in shapes}) == 1
-            and shapes[0][1:] in ((), ("1",))
-            and len(shapes) < 3
-        ):
+        is_pair = len(shapes) < 3 and {shape[1:] for shape in shapes} in ({()}, {("1",)})
+        if name == "cov" and is_pair:
             return Term(f"cov({text})", WHOLE, (*shapes[0][:1], *shapes[-1][:1]))
         if name == "diag" and not any(shapes):
             return Term(f"diag({text})", WHOLE, (str(len(shapes)),) * 2)

@@ -10,7 +10,7 @@ from dataclasses import dataclass, replace
 from pathlib import PurePath
 from typing import Any
 
-from navsym.core.answers import Answer
+from navsym.core.answers import Answer, named
 from navsym.core.errors import EmptyError, ExpressionSyntaxError, TooLargeError
 from navsym.core.tables import Table
 from navsym.language.files import name_file, read_text
@@ -84,15 +84,9 @@ class ReadFormula:
 
     def document(self) -> dict[str, Any]:
         """The formula as plain data."""
-        place = {"file": self.file, "line": self.line, "column": self.column}
-        keys = ("source", "status", "why", "left", "relation", "right")
-        return {
-            "place": place,
-            **{k: getattr(self, k) for k in keys},
-            **({} if self.order is None else {"order": dict([self.order])}),
-            "symbols": list(self.symbols),
-            "latex": self.latex,
-        }
+        known = {"place": named(self, "file line column"), **named(self, "source status why left relation right")}
+        known |= {} if self.order is None else {"order": dict([self.order])}
+        return {**known, "symbols": list(self.symbols), "latex": self.latex}
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)

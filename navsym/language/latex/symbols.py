@@ -29,12 +29,9 @@ class SymbolReader:
         self.place, self.integrals = 0, 0
         self.bars: list[str] = []
         spelled = [(name, list_spelling(latex)) for name, latex in notation.spellings]
-        shapes = {
-            name: sum(n.bold + (n.sub is not None) + (n.sup is not None) for n in found) for name, found in spelled
-        }
-        self.spelled = sorted(
-            spelled, key=lambda pair: (len(pair[1]), shapes[pair[0]]), reverse=True
-        )  # longer ones first
+        marks = [sum(n.bold + (n.sub is not None) + (n.sup is not None) for n in found) for _, found in spelled]
+        ranks = {name: (len(found), count) for (name, found), count in zip(spelled, marks, strict=True)}
+        self.spelled = sorted(spelled, key=lambda pair: ranks[pair[0]], reverse=True)  # longer ones first
 
     def start(self, noads: list[Noad]) -> Self:
         """A reader of a list of its own: the argument of a command."""
@@ -219,11 +216,8 @@ class SymbolReader:
         """A symbol that nobody declared, with the name that it might have."""
         self.refuse_operator(noad)
         prefix = noad.is_command("Delta", "delta", "nabla") and not noad.has_scripts
-        if (
-            noad.kind in ("sym", "cmd")
-            and self.base(noad) is None
-            and not (prefix and self.place + 1 < len(self.noads))
-        ):
+        is_prefix = prefix and self.place + 1 < len(self.noads)
+        if noad.kind in ("sym", "cmd") and self.base(noad) is None and not is_prefix:
             self.refuse("a symbol of the language", "write it otherwise, or as a name in [latex]")
         if noad.kind == "word" and self.base(noad) is None:
             self.refuse("a formula without words", "write the words outside")
@@ -290,22 +284,16 @@ class SymbolReader:
         """True for a superscript that can only be part of a name."""
         if not sup:
             return False
-        first, last = sup[0], sup[-1]
-        if len(sup) == 1 and (transpose_mark(last) or last.is_sign("*") or last.is_command("ast", "times", "wedge")):
+        first, is_alone = sup[0], len(sup) == 1
+        if is_alone and (transpose_mark(first) or first.is_sign("*") or first.is_command("ast", "times", "wedge")):
             return False
-        listed = any(n.is_sign(",") for n in sup)
-        return (
-            listed or (len(sup) == 1 and not self.is_operand(last)) or first.kind == "open" or first.is_command("prime")
-        )
+        is_begun = first.kind == "open" or first.is_command("prime")
+        return is_begun or any(n.is_sign(",") for n in sup) or (is_alone and not self.is_operand(first))
 
     def is_operand(self, noad: Noad) -> bool:
         """True for what may be a power alone."""
-        return (
-            noad.kind in ("arg", "word", "bar")
-            or noad.is_sign(*"0123456789")
-            or self.base(noad) is not None
-            or (noad.is_command("pi"))
-        )
+        is_number = noad.is_sign(*"0123456789") or noad.is_command("pi")
+        return is_number or noad.kind in ("arg", "word", "bar") or self.base(noad) is not None
 
 
 def transpose_mark(noad: Noad) -> str:
