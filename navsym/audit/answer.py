@@ -219,11 +219,8 @@ class Audit(Answer):
     def annotations(self) -> list[str]:
         """The failures, and ``file:line: message`` for every refused line."""
         meaningless = [f"{place}: {why}" for place, why in self.meaningless]
-        return [
-            *self.list_failures(),
-            *meaningless,
-            *(f"{f.file}:{n}: not read: {why}" for f in self.files for n, why in f.refused),
-        ]
+        unread = [f"{f.file}:{n}: not read: {why}" for f in self.files for n, why in f.refused]
+        return [*self.list_failures(), *meaningless, *unread]
 
     def document(self, every: bool = False) -> dict[str, Any]:
         """The JSON document of ``navsym audit``."""

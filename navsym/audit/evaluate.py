@@ -618,7 +618,8 @@ class Evaluator:
                 raise Unreadable(f"a part of an array that {function.name} may change", given.line)
             if not sides and self.unit.language != "python":
                 return self.linked(inner)
-        is_python, is_open = self.unit.language == "python", argument.number in ("auto", "other")
+        is_python, is_c = self.unit.language == "python", self.unit.rules.integer
+        is_open = argument.number in ("auto", "other")
         is_alias = given.kind in ("method", "call", "choose") and is_view(self.unit, given) and given.parts[1] != "copy"
         if is_python and is_alias and argument.name in changed:
             raise Unreadable(f"a view of an array that {function.name} may change", given.line)
@@ -634,9 +635,7 @@ class Evaluator:
         is_row = is_place and not any(side.kind == "slice" for side in walk(inner))  # of C, whose name is a pointer
         if is_copied and not variable.shape:
             share(variable, [self.linked(inner)])
-        elif variable.shape and (
-            is_place or is_alias if is_python else self.unit.rules.integer and (is_row or is_open)
-        ):
+        elif variable.shape and (is_place or is_alias if is_python else is_c and (is_row or is_open)):
             share(variable, self.arrays_in(sources_of(given)))
         return variable
 

@@ -339,9 +339,8 @@ class Machine(Evaluator):
             share(variable, [copied])
         lazy = ("op", "minus", "method", "index", *(("name",) if self.unit.language == "cpp" else ()))
         if is_lazy and shape is None and sizes and value is not None and value.kind in lazy:
-            share(
-                variable, self.arrays_in(sources_of(value))
-            )  # auto of Eigen, computed when it is used; of an array a pointer
+            # auto of Eigen is computed when it is used, and of an array it is a pointer
+            share(variable, self.arrays_in(sources_of(value)))
 
     def note_unread(self, value: Value, statement: Part) -> None:
         """Keep in mind an assignment of what is not read."""
@@ -622,9 +621,8 @@ class Machine(Evaluator):
 
     def require_order(self, *parts: Part) -> None:
         """Refuse operands of C of which one call writes what another one reads: their order is open."""
-        if self.unit.language in ("c", "cpp") and (
-            call := find_race(self.unit, parts, {*self.frame}, {*self.file_names})
-        ):
+        is_open = self.unit.language in ("c", "cpp")
+        if is_open and (call := find_race(self.unit, parts, {*self.frame}, {*self.file_names})):
             raise Unreadable("a call that writes beside others, in an order that C leaves open", call.line)
 
     def is_own(self, name: str) -> bool:

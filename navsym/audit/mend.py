@@ -150,11 +150,8 @@ def list_words(source: Source, expected: Tree) -> Words:
     known = dict.fromkeys([*first, *sorted(arrays | names_in(*body) | {a.name for a in source.function.arguments})])
     scalars = [name for name, variable in variables.items() if variable.shape == () and not {*"(@"} & {*name}]
     entries = [s for s in source.names.spellings.values() if s[-1] in ")]"]
-    return Words(
-        tuple(name for name in known if name in arrays),
-        tuple(dict.fromkeys([*spelled, *scalars, *entries]))[:MOST_NAMES],
-        tuple(name for name in known if name not in arrays),
-    )
+    of_arrays, others = (tuple(name for name in known if (name in arrays) is kind) for kind in (True, False))
+    return Words(of_arrays, tuple(dict.fromkeys([*spelled, *scalars, *entries]))[:MOST_NAMES], others)
 
 
 @dataclass(frozen=True, slots=True)

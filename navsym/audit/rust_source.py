@@ -261,9 +261,8 @@ class Reader(SourceReader):
                 words = {word.removeprefix(OWNER) for place in self.places.get(last, ()) for word in place} | {*INSIDE}
                 if last in self.unit.variables and head in words:
                     return self.part("name", node, last)
-                return self.part(
-                    "name", node, "M_PI" if re.fullmatch(r"((std|core)::)?(f32::|f64::)?consts::PI", name) else name
-                )
+                is_pi = re.fullmatch(r"((std|core)::)?(f32::|f64::)?consts::PI", name)
+                return self.part("name", node, "M_PI" if is_pi else name)
             case "reference_expression":
                 value = self.expression(field_of(node, "value"))
                 is_written = any(child.type == "mutable_specifier" for child in node.children)

@@ -369,14 +369,16 @@ def take_lines(unit: Unit, function: Function, first: int, last: int, where: str
     again is no number any more, so that what depends on it stays unread.
     """
     body, before = function.body, list[Part]()
+
+    def is_near(part: Any) -> bool:
+        return isinstance(part, Part) and part.line <= last and last_line(unit, part) >= first
+
     while True:
-        near = [s for s in body if s.line <= last and last_line(unit, s) >= first]
+        near = [s for s in body if is_near(s)]
         if near and all(first <= s.line and last_line(unit, s) <= last for s in near):
             break
         blocks = [part for s in near if len(near) == 1 for part in s.parts if isinstance(part, tuple)]
-        inner = [
-            b for b in blocks if any(isinstance(s, Part) and s.line <= last and last_line(unit, s) >= first for s in b)
-        ]
+        inner = [block for block in blocks if any(map(is_near, block))]
         if len(inner) != 1:
             got = "half of one" if near else "none"
             message = f"expected whole statements of one block of {function.name} in lines {first} to {last}; got {got}"

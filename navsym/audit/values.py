@@ -452,9 +452,8 @@ def whole_kind(text: str) -> str:
 
 def number_type(text: str) -> str:
     """The type of the numbers in a matrix of Eigen, which has one for each size; other types as they are."""
-    found = re.fullmatch(
-        r"(?:\w+::)*(?:Row)?(?:Matrix|Vector|Quaternion)\w*?(?:([fd])|<(\w+)\b.*>)", text.replace(" ", "")
-    )
+    pattern = r"(?:\w+::)*(?:Row)?(?:Matrix|Vector|Quaternion)\w*?(?:([fd])|<(\w+)\b.*>)"
+    found = re.fullmatch(pattern, text.replace(" ", ""))
     return text if found is None else found[2] or {"f": "float", "d": "double"}[found[1]]
 
 

@@ -340,9 +340,8 @@ class Inference:
         A = inner[0]
         whole = self.determinant(A, part)
         if whole is None:
-            return [
-                [{("name", f"{print_part(part)} {i} {j}"): Fraction(1)} for j in range(len(A))] for i in range(len(A))
-            ]
+            name, side = print_part(part), range(len(A))
+            return [[{("name", f"{name} {i} {j}"): Fraction(1)} for j in side] for i in side]
 
         def entry(i: int, j: int) -> Cell:
             minor = [[cell for c, cell in enumerate(row) if c != i] for r, row in enumerate(A) if r != j]

@@ -138,9 +138,8 @@ def read_tree(text: str, names: Collection[str] | None = None, *, where: str = "
 def start_reading(text: str, names: Collection[str] | None, where: str, length: int) -> Reader:
     """A reader at the beginning of a text, which must be one."""
     if not isinstance(text, str):
-        raise ExpressionSyntaxError(
-            f'expected an expression as text; got {quote(text)}; put it in quotes, such as "1/2"', where=where
-        )
+        message = f'expected an expression as text; got {quote(text)}; put it in quotes, such as "1/2"'
+        raise ExpressionSyntaxError(message, where=where)
     for name in RESERVED.intersection(names or ()):
         check_name(name, where=where)
     if not text.strip():

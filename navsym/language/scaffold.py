@@ -234,9 +234,8 @@ def append_claim(source: str, new: NewClaim) -> str:
     if new.call:
         return append_stated(source, new, names_at_top(tree))
     given = read_declarations(tree, new.positive)
-    sides = [
-        read_claim_side(text, where, given) for text, where in ((new.printed, "--printed"), (new.derived, "--derived"))
-    ]
+    texts = ((new.printed, "--printed"), (new.derived, "--derived"))
+    sides = [read_claim_side(text, where, given) for text, where in texts]
     used = {s.name for side in sides for s in side.free_symbols}
     if idle := sorted(new.positive - used):
         raise UnknownSymbolError(f"expected names of the two sides; got {idle[0]}; leave it out", where="--positive")
@@ -333,11 +332,9 @@ def read_symbol_call(call: ast.Call) -> dict[str, sp.Symbol]:
     text = call.args[0].value if named and call.args and isinstance(call.args[0], ast.Constant) else ""
     if not isinstance(text, str):
         return {}
-    real, positive, nonnegative, nonzero = (any(key.arg == kind for key in call.keywords) for kind in KINDS)
+    known = {kind: any(key.arg == kind for key in call.keywords) for kind in KINDS}
     names = [name for name in text.replace(",", " ").split() if NAMES_IN.fullmatch(name) and name not in RESERVED]
-    return {
-        name: symbol(name, real=real, positive=positive, nonnegative=nonnegative, nonzero=nonzero) for name in names
-    }
+    return {name: symbol(name, where="", **known) for name in names}
 
 
 def read_equation_numbers(source: str) -> tuple[str, ...]:

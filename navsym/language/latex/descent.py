@@ -185,9 +185,7 @@ class Descent(SymbolReader):
         """A group by its bracket and by the subscript of the closing one."""
         kind = opening.value
         crossed |= kind == "floor" and closing.sub is None and self.notation.has_skew_floor
-        crossed |= (
-            bool(closing.sub) and len(closing.sub or ()) == 1 and (closing.sub or [closing])[0].is_command("times")
-        )
+        crossed |= closing.sub is not None and len(closing.sub) == 1 and closing.sub[0].is_command("times")
         part = Part("()", (kind, inner), opening.at)
         if crossed and kind in ("[", "(", "floor"):
             part = Part("skew", (inner,), opening.at)

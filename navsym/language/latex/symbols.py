@@ -68,9 +68,8 @@ class SymbolReader:
                 if not any(w.bold for w in wanted):
                     self.faces.setdefault(name, set()).add(found[0].bold)
                 return Part("name", (name,), found[0].at), turned
-            if len(found) == len(wanted) and all(
-                is_same(w, f, last=w is wanted[-1]) for w, f in zip(wanted, found, strict=True)
-            ):
+            pairs = zip(wanted, found, strict=False)
+            if len(found) == len(wanted) and all(is_same(w, f, last=w is wanted[-1]) for w, f in pairs):
                 if name == "eye":
                     self.place += len(wanted)
                     return Part("eye", ("?",), found[0].at), replace(found[-1], sub=None)
