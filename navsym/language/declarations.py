@@ -60,9 +60,8 @@ def read_parameter(name: str, value: Any, where: str) -> Parameter:
         got = quote(value) if isinstance(value, str) else describe_value(value)
         hint = f": {suggest_nearest(value, SIGNS)}" if isinstance(value, str) else ""
         expected = f'a range such as ["1/2", "2"] or one of {", ".join(SIGNS)}'
-        raise ExpressionSyntaxError(
-            f"expected {expected}; got {got}; {advise_on_declaration(value, name)}{hint}", where=where
-        )
+        remedy = f"{advise_on_declaration(value, name)}{hint}"
+        raise ExpressionSyntaxError(f"expected {expected}; got {got}; {remedy}", where=where)
     made = symbol(name, where=where, **SIGNS[value])
     return Parameter(name, made, None, None, value)  # type: ignore[arg-type]
 

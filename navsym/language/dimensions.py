@@ -166,9 +166,8 @@ class Inference:
             self.system.equate(x, y)
         except ConflictError:
             got = f"{print_part(left)} in {self.show(x)} and {print_part(right)} in {self.show(y)}"
-            raise DomainError(
-                f"expected {what} of one unit; got {got}; correct one of them", where=self.where
-            ) from None
+            message = f"expected {what} of one unit; got {got}; correct one of them"
+            raise DomainError(message, where=self.where) from None
         return x
 
     def plain(self, x: Cell, part: Tree, what: str) -> None:
@@ -184,9 +183,8 @@ class Inference:
         """A unit in words."""
         reduced = self.system.reduce(form)
         powers: Powers = {key[1]: n for key, n in reduced.items() if key[0] == "unit"}
-        names = [
-            f"the unit of {key[1]}" + ("" if n == 1 else f"^{n}") for key, n in reduced.items() if key[0] == "name"
-        ]
+        unknown = [(key[1], n) for key, n in reduced.items() if key[0] == "name"]
+        names = [f"the unit of {name}" + ("" if n == 1 else f"^{n}") for name, n in unknown]
         return " ".join([print_unit(powers), *names]) + " times the base unit" * self.scales
 
     def total(self, cells: Iterable[tuple[Cell, Tree]], what: str) -> Cell:

@@ -89,9 +89,8 @@ def check_module_name(name: str) -> str:
     """The name, when it can be a derivation module; raises ExpressionSyntaxError otherwise."""
     if isinstance(name, str) and NAME.fullmatch(name) and not keyword.iskeyword(name):
         return name
-    raise ExpressionSyntaxError(
-        f"expected a module name of a-z, 0-9 and _ that is no word of Python; got {quote(name)}; rename it"
-    )
+    expected = "a module name of a-z, 0-9 and _ that is no word of Python"
+    raise ExpressionSyntaxError(f"expected {expected}; got {quote(name)}; rename it")
 
 
 def module_source(

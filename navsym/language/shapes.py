@@ -97,10 +97,8 @@ def read_shape(name: str, value: Any, taken: Collection[str], where: str) -> lis
     if isinstance(value, str):
         value = {"sign": value}
     if not isinstance(value, Mapping):
-        message = (
-            f"expected a word, a range or a table; got {describe_value(value)}; write {{ vector = 3 }}, for example"
-        )
-        raise ShapeError(message, where=where)
+        got, remedy = describe_value(value), "write { vector = 3 }, for example"
+        raise ShapeError(f"expected a word, a range or a table; got {got}; {remedy}", where=where)
     expect_keys(value, KEYS, where)
     kinds = [kind for kind in KINDS if kind in value]
     if len(kinds) > 1:

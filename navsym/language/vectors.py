@@ -513,9 +513,8 @@ class ValueWriter(LatexWriter):
             return Text(BOUND[part.head].format(self.enclose(inner[0], TIGHT), *texts[1:]), LOOSE)
         if part.head == "diff":
             order = "" if len(texts) < 3 else f"^{{{texts[2]}}}"
-            return Text(
-                rf"\frac{{\partial{order}}}{{\partial {texts[1]}{order}}} {self.enclose(inner[0], RAISED)}", TIGHT
-            )
+            operator = rf"\frac{{\partial{order}}}{{\partial {texts[1]}{order}}}"
+            return Text(f"{operator} {self.enclose(inner[0], RAISED)}", TIGHT)
         return super().spell(part, inner)
 
 

@@ -138,9 +138,8 @@ class Climber(ClusterReader):
                 return
             closing = CLOSING.get(inner[0].text, "")
             bracketed = bool(closing) and match_brace(self.tokens, self.place + 1, inner[0].text, closing) == stop - 1
-            bold = self.tokens[self.place].bold and not any(
-                t.text in CLOSING or t.text in CLOSING.values() for t in inner
-            )
+            has_brackets = any(t.text in CLOSING or t.text in CLOSING.values() for t in inner)
+            bold = self.tokens[self.place].bold and not has_brackets
             if one.after != stop and not bracketed and not bold:
                 self.refuse("a script on one symbol")
             del self.tokens[stop], self.tokens[self.place]

@@ -258,9 +258,8 @@ class Descent(SymbolReader):
         if noad.sub is not None:
             base = "".join(str(n.value) for n in noad.sub)
             if name != "log" or base not in ("2", "10") or power:
-                raise Refusal(
-                    noad.at, "a function without subscript", self.text[noad.at : noad.end], "write it otherwise"
-                )
+                got = self.text[noad.at : noad.end]
+                raise Refusal(noad.at, "a function without subscript", got, "write it otherwise")
             name = f"log_{base}"
         elif noad.is_command("log"):
             name = "log?"

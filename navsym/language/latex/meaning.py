@@ -101,9 +101,8 @@ def fit_sides(left: Term, right: Term, at: int) -> tuple[Term, Term]:
             if one.text == "0" and other.shape:
                 zero = Term(f"zeros({', '.join(other.shape)})", WHOLE, other.shape)
                 return (zero, other) if one is left else (other, zero)
-        raise Refusal(
-            at, "two sides of one shape", f"{say(left.shape)} and {say(right.shape)}", "correct a declaration"
-        )
+        got = f"{say(left.shape)} and {say(right.shape)}"
+        raise Refusal(at, "two sides of one shape", got, "correct a declaration")
     return left, right
 
 
@@ -142,9 +141,8 @@ class Explainer:
         if part.head == "zeros":
             return Term(f"zeros({', '.join(part.args)})", shape=part.args)
         if part.head == "order":
-            raise Refusal(
-                part.at, "O(x^k) as the last term of the right side", "it elsewhere", "move it, or leave it out"
-            )
+            expected = "O(x^k) as the last term of the right side"
+            raise Refusal(part.at, expected, "it elsewhere", "move it, or leave it out")
         if part.head == "()":
             return self.explain(part.args[1])
         method: Callable[[Part], Term] = getattr(self, f"explain_{METHODS.get(part.head, part.head)}")
@@ -297,9 +295,8 @@ class Explainer:
             if not base.shape and kind == "T" and "T" in self.notation and not self.notation.shapes["T"]:
                 return Term(f"{base.inside(WHOLE)}**T", POWER)
             if not base.shape:
-                raise Refusal(
-                    mark.at, "a vector or matrix before a transpose", "a scalar", "declare it, or name the power"
-                )
+                expected = "a vector or matrix before a transpose"
+                raise Refusal(mark.at, expected, "a scalar", "declare it, or name the power")
             if kind[0] == "-":
                 if base.shape[0] != base.shape[1]:
                     raise Refusal(mark.at, "a square matrix", say(base.shape), "correct a declaration")
@@ -310,9 +307,8 @@ class Explainer:
             return Term(f"conj({base.text})", WHOLE, base.shape, "", True, base.is_unit)
         if kind == "skew" and is_space_vector(base.shape):
             return Term(f"skew({base.text})", WHOLE, ("3", "3"))
-        raise Refusal(
-            mark.at, "a transpose, a conjugate of a quaternion or a power", "another mark", "name it in [latex]"
-        )
+        expected = "a transpose, a conjugate of a quaternion or a power"
+        raise Refusal(mark.at, expected, "another mark", "name it in [latex]")
 
     def explain_frac(self, part: Part) -> Term:
         above, below = self.explain(part.args[0]), self.scalar(part.args[1], "as denominator")
@@ -343,9 +339,8 @@ class Explainer:
         for value, condition in reversed(list(zip(rows[::2], rows[1::2], strict=True))):
             term = self.explain(value)
             if not may_be_same(term.shape, whole.shape):
-                raise Refusal(
-                    value.at, "values of one shape", f"{say(term.shape)} and {say(whole.shape)}", "correct one"
-                )
+                got = f"{say(term.shape)} and {say(whole.shape)}"
+                raise Refusal(value.at, "values of one shape", got, "correct one")
             sides = [self.scalar(side, "in a condition").text for side in condition.args[::2]]
             for place in reversed(range(len(sides) - 1)):
                 compared = f"{sides[place]} {condition.args[2 * place + 1]} {sides[place + 1]}"

@@ -344,9 +344,8 @@ def read_block(block: Block, macros: Mapping[str, Macro], notation: Notation, li
     for relation in relations:
         if not block.display and relation.trouble is not None and not relation.sign and "=" not in block.text:
             continue
-        yield read_relation(
-            relation, [block.start + place for place in [*places, len(block.text)]], notation, lines, block
-        )
+        whole = [block.start + place for place in [*places, len(block.text)]]
+        yield read_relation(relation, whole, notation, lines, block)
 
 
 def read_relation(relation: Relation, places: list[int], notation: Notation, lines: Lines, block: Block) -> ReadFormula:
@@ -429,9 +428,8 @@ def read_sides(
             terms.append(explain(part, notation, as_column))
     first_term, second_term = fit_sides(terms[0], terms[1], relation.right.start)
     if "eye(?)" in first_term.text + second_term.text:
-        raise Refusal(
-            relation.left.start, "a unit matrix whose size is known", "one without", "write its size below it"
-        )
+        expected = "a unit matrix whose size is known"
+        raise Refusal(relation.left.start, expected, "one without", "write its size below it")
     if (first_term.shape or second_term.shape) and relation.sign not in ("=", "!="):
         raise Refusal(relation.right.start, "scalars on both sides of an order", "vectors", "compare entries")
     if order is not None and relation.sign != "=":
