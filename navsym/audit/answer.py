@@ -18,7 +18,7 @@ from navsym.audit.names import Names
 from navsym.audit.questions import SENSES, Entry, Question, is_used, list_entries, read_question
 from navsym.audit.senses import weaken
 from navsym.audit.sources import Source, find_function, load_unit, read_source
-from navsym.audit.values import Array, Cell, Scalar, Unread, cells_of, places_of
+from navsym.audit.values import Cell, Scalar, Unread, places_of
 from navsym.claims.display import write_table
 from navsym.claims.verdict import CERTIFIED, OPEN, PROVED, REFUTED, Status
 from navsym.core.answers import Answer, named
@@ -219,11 +219,8 @@ class Audit(Answer):
     def annotations(self) -> list[str]:
         """The failures, and ``file:line: message`` for every refused line."""
         meaningless = [f"{place}: {why}" for place, why in self.meaningless]
-        return [
-            *self.list_failures(),
-            *meaningless,
-            *(f"{f.file}:{n}: not read: {why}" for f in self.files for n, why in f.refused),
-        ]
+        unread = [f"{f.file}:{n}: not read: {why}" for f in self.files for n, why in f.refused]
+        return [*self.list_failures(), *meaningless, *unread]
 
     def document(self, every: bool = False) -> dict[str, Any]:
         """The JSON document of ``navsym audit``."""
@@ -411,8 +408,8 @@ def list_formulas(source: Source) -> Iterator[OutputFormula]:
 def list_outputs(source: Source, case: Case) -> Iterator[tuple[str, Cell]]:
     """Names of outputs with their values."""
     if (value := case.returned) is not None:
-        places = [*places_of(value.shape)] if isinstance(value, Array) else [()]
-        yield from ((spell_entry(source.unit, "return", p), c) for p, c in zip(places, cells_of(value), strict=True))
+        pairs = zip(places_of(value.shape), value.cells, strict=True)
+        yield from ((spell_entry(source.unit, "return", place), cell) for place, cell in pairs)
     for name, variable in case.variables.items():
         for place, cell in sorted(variable.cells.items()):
             is_output = variable.is_input or name in source.function.outputs

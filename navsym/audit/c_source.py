@@ -84,7 +84,7 @@ class Reader(SourceReader):
     hidden : first byte of a name that stands in the tree as a number, since the grammar would take it for a type
     """
 
-    HEAD = "int a_ = "
+    HEAD, VALUE = "int a_ = ", ("declaration", "declarator", "value")
     REALS = OPEN
     OPEN = (*SourceReader.OPEN, "while_statement", "do_statement", "switch_statement", "compound_statement")
 
@@ -117,10 +117,6 @@ class Reader(SourceReader):
             root = SourceReader.parse(self, bytes(text))
             self.nodes = [*descend(root)]
         return root
-
-    @staticmethod
-    def find_value(node: Any) -> Any:
-        return field_of(field_of(node, "declarator"), "value") if node.type == "declaration" else None
 
     region_of = staticmethod(region_of)
 
@@ -326,12 +322,8 @@ class Reader(SourceReader):
         cases, test = named(field_of(node, "body")), self.expression(field_of(node, "condition"))
         labels = (n for case in cases for n in descend(case) if n.type in ("case_statement", "..."))
         is_odd = any(n.type == "..." or n.parent.parent.type != "switch_statement" for n in labels)
-        kinds = (
-            ({"odd"} if is_odd else set[str]())
-            | {case.type for case in cases}
-            | {part.kind for part in walk(test)} - {"name", "number", "index", "op"}
-        )
-        if kinds - {"case_statement"}:
+        is_odd |= any(case.type != "case_statement" for case in cases)
+        if is_odd or {part.kind for part in walk(test)} - {"name", "number", "index", "op"}:
             return self.unread(node, "a switch over a call, or with other statements around its cases")
         following, other = tuple[Part, ...](), tuple[Part, ...]()
         ways: list[tuple[Any, tuple[Part, ...]]] = []

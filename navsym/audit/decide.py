@@ -8,8 +8,7 @@ from __future__ import annotations
 
 import contextlib
 import itertools
-import math
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from typing import Any
@@ -194,7 +193,11 @@ def prove_shared(pairs: Sequence[tuple[Tree, Tree]], scope: Scope) -> dict[tuple
 def search_proof(document: Document, scope: Scope, rounds: Rounds, why: str = "") -> Decision:
     """What the search for proof trees makes of the statement; ``why`` it is left open otherwise."""
     (case,), box = player.read_statement(document)
-    witness = find_witness(case.terms, box)[1] if "given" not in document else find_related(case.terms, box, scope)
+    if "given" in document:  # a point at which the relations hold, too
+        near = list_values(case.terms, draw_points(box, scope))
+        witness = next(({name: str(value) for name, value in point.items()} for point, _ in near), None)
+    else:
+        witness = find_witness(case.terms, box)[1]
     if witness is None:
         return Decision(OPEN, why="no point was found at which both sides have a value")
     proofs = [find_proof(goal, rounds=rounds) for goal in case.goals]
@@ -205,15 +208,6 @@ def search_proof(document: Document, scope: Scope, rounds: Rounds, why: str = ""
     return Decision(CERTIFIED if "balls" in rules_of(proofs) else PROVED, certificate=certificate)
 
 
-def find_related(terms: Sequence[Any], box: Mapping[str, Any], scope: Scope) -> dict[str, str] | None:
-    """A point at which the relations hold and all terms have a value."""
-    for point in draw_points(box, scope):
-        place = {name: player.Jet(player.arb(value)) for name, value in point.items()}
-        if all(player.value_of(term, place).is_finite() for term in terms):
-            return {name: str(value) for name, value in point.items()}
-    return None
-
-
 # Counterexamples
 
 
@@ -222,13 +216,9 @@ def refute(document: Document, code: Tree, expected: Tree, scope: Scope) -> Deci
     (case,), box = player.read_statement(document)
     others = list_names(*scope.relations, *(t for c in scope.conditions for t in (c.left, c.right) if t is not None))
     whole = {**box, **{n: player.read_range(scope.ranges[n]) for n in others if n not in box}}
-    for point in draw_points(whole, scope):
-        place = {name: player.Jet(player.arb(value)) for name, value in point.items()}
-        if not all(holds_at(condition, place) for condition in scope.conditions):
-            continue
-        values = [player.value_of(goal.term, place) for goal in case.goals]
-        is_there = all(player.value_of(term, place).is_finite() for term in case.terms)
-        if not is_there or not any(v > 0 or v < 0 for v in values):
+    goals = [goal.term for goal in case.goals]
+    for point, values in list_values([*goals, *case.terms], draw_points(whole, scope), scope.conditions):
+        if not any(v > 0 or v < 0 for v in values[: len(goals)]):
             continue
         texts = {name: str(value) for name, value in point.items()}
         try:
@@ -238,6 +228,18 @@ def refute(document: Document, code: Tree, expected: Tree, scope: Scope) -> Deci
         both = value_text(code, point), value_text(expected, point)
         return Decision(REFUTED, "exact", texts, both, "", certificate)
     return None
+
+
+def list_values(
+    terms: Sequence[Any], points: Iterable[Point], conditions: Sequence[Condition] = ()
+) -> Iterator[tuple[Point, list[Any]]]:
+    """Those of some points at which conditions hold and all terms have a value, with these values."""
+    for point in points:
+        place = {name: player.Jet(player.arb(value)) for name, value in point.items()}
+        if all(holds_at(condition, place) for condition in conditions):
+            values = [player.value_of(term, place) for term in terms]
+            if all(value.is_finite() for value in values):
+                yield point, values
 
 
 def draw_points(box: Mapping[str, Any], scope: Scope) -> Iterator[Point]:
@@ -282,16 +284,12 @@ def meet(relation: Tree, point: Point, box: Mapping[str, Any]) -> bool:
             point[name] = 2 * point[name] / (1 + square)
         point[names[0]] = (1 - square) / (1 + square)
     else:
+        place = [point[name] for name in names]
         for at, name in enumerate(names):
-            if max(exponents[at] for exponents in terms) == 1:
-                parts = [fmpq(0), fmpq(0)]
-                for exponents, coefficient in terms.items():
-                    powers = zip(names, exponents, strict=True)
-                    factors = (point[other] ** int(power) for other, power in powers if other != name)
-                    parts[exponents[at]] += math.prod(factors, start=fmpq(coefficient))
-                if parts[1] != 0:
-                    point[name] = -parts[0] / parts[1]
-                    break
+            slope = polynomial.derivative(at)(*place) if polynomial.degrees()[at] == 1 else 0
+            if slope != 0:
+                point[name] -= polynomial(*place) / slope
+                break
     return all(player.is_inside(("number", point[name]), box[name]) for name in names)
 
 

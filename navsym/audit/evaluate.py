@@ -39,7 +39,6 @@ from navsym.audit.values import (
     Variable,
     add,
     as_real,
-    cells_of,
     combine,
     constant_of,
     convert,
@@ -457,10 +456,10 @@ class Evaluator:
 
     def stack(self, values: list[Value]) -> Array:
         """Numbers as a vector, vectors as the rows of a matrix."""
-        shapes = {value.shape if isinstance(value, Array) else () for value in values}
+        shapes = {value.shape for value in values}
         forbid(len(shapes) != 1 or not values, "a list of different shapes")
         (shape,) = shapes
-        return Array((len(values), *shape), tuple(c for v in values for c in cells_of(v)))
+        return Array((len(values), *shape), tuple(c for v in values for c in v.cells))
 
     def linked(self, value: Part | None) -> Variable:
         """The variable to which a reference or pointer is a second name."""
@@ -619,14 +618,15 @@ class Evaluator:
                 raise Unreadable(f"a part of an array that {function.name} may change", given.line)
             if not sides and self.unit.language != "python":
                 return self.linked(inner)
-        is_python, is_open = self.unit.language == "python", argument.number in ("auto", "other")
+        is_python, is_c = self.unit.language == "python", self.unit.rules.integer
+        is_open = argument.number in ("auto", "other")
         is_alias = given.kind in ("method", "call", "choose") and is_view(self.unit, given) and given.parts[1] != "copy"
         if is_python and is_alias and argument.name in changed:
             raise Unreadable(f"a view of an array that {function.name} may change", given.line)
         value = self.value(given)
-        if argument.number == "auto" and any(isinstance(c, Scalar) and c.number in LIMITS for c in cells_of(value)):
+        if argument.number == "auto" and any(isinstance(c, Scalar) and c.number in LIMITS for c in value.cells):
             raise Unreadable(f"an integer given to the template {function.name}, which may cut quotients", given.line)
-        shape = value.shape if isinstance(value, Array) else ()
+        shape = value.shape
         variable = Variable(argument.name, "list" if isinstance(value, List) else argument.number, shape)
         if isinstance(value, Unread):
             variable.all_unread = value
@@ -635,9 +635,7 @@ class Evaluator:
         is_row = is_place and not any(side.kind == "slice" for side in walk(inner))  # of C, whose name is a pointer
         if is_copied and not variable.shape:
             share(variable, [self.linked(inner)])
-        elif variable.shape and (
-            is_place or is_alias if is_python else self.unit.rules.integer and (is_row or is_open)
-        ):
+        elif variable.shape and (is_place or is_alias if is_python else is_c and (is_row or is_open)):
             share(variable, self.arrays_in(sources_of(given)))
         return variable
 

@@ -29,7 +29,6 @@ from navsym.audit.values import (
     Unreadable,
     Value,
     Variable,
-    cells_of,
     combine,
     constant_of,
     convert,
@@ -340,13 +339,12 @@ class Machine(Evaluator):
             share(variable, [copied])
         lazy = ("op", "minus", "method", "index", *(("name",) if self.unit.language == "cpp" else ()))
         if is_lazy and shape is None and sizes and value is not None and value.kind in lazy:
-            share(
-                variable, self.arrays_in(sources_of(value))
-            )  # auto of Eigen, computed when it is used; of an array a pointer
+            # auto of Eigen is computed when it is used, and of an array it is a pointer
+            share(variable, self.arrays_in(sources_of(value)))
 
     def note_unread(self, value: Value, statement: Part) -> None:
         """Keep in mind an assignment of what is not read."""
-        unread = next((cell for cell in cells_of(value) if isinstance(cell, Unread)), None)
+        unread = next((cell for cell in value.cells if isinstance(cell, Unread)), None)
         if unread is not None:
             self.reading.valueless[statement.span] = unread.why
 
@@ -460,7 +458,7 @@ class Machine(Evaluator):
         if is_python and value.kind == "call" and value.parts[0] in self.unit.functions:
             bases += [v for known, v in self.frame.items() if "." in known and v.shape]  # a member that it returns
         number = "list" if isinstance(result, List) else "real"
-        variable = Variable(name, number, result.shape if isinstance(result, Array) else ())
+        variable = Variable(name, number, result.shape)
         cells = result.cells if isinstance(result, Array) else ()
         if is_python and not isinstance(result, List) and cells and all(is_integer(cell) for cell in cells):
             variable.number = "int"  # an array of integers cuts what is assigned to its entries
@@ -494,13 +492,13 @@ class Machine(Evaluator):
             lose(variable, value)
             return
         variable.all_unread = None
-        shape = value.shape if isinstance(value, Array) else ()
+        shape = value.shape
         forbid(not shape and variable.shape, "a number assigned to an array")
         if variable.shape not in (None, shape) and math.prod(variable.shape or ()) != math.prod(shape):
             raise Unreadable("an assignment between shapes that do not fit")
         if shape:
             variable.shape = variable.shape or shape
-        for place, cell in zip(places_of(variable.shape or ()), cells_of(value), strict=True):
+        for place, cell in zip(places_of(variable.shape or ()), value.cells, strict=True):
             self.write_cell(variable, place, cell, statement)
 
     def write_cell(self, variable: Variable, place: Index, cell: Cell, statement: Part) -> None:
@@ -623,9 +621,8 @@ class Machine(Evaluator):
 
     def require_order(self, *parts: Part) -> None:
         """Refuse operands of C of which one call writes what another one reads: their order is open."""
-        if self.unit.language in ("c", "cpp") and (
-            call := find_race(self.unit, parts, {*self.frame}, {*self.file_names})
-        ):
+        is_open = self.unit.language in ("c", "cpp")
+        if is_open and (call := find_race(self.unit, parts, {*self.frame}, {*self.file_names})):
             raise Unreadable("a call that writes beside others, in an order that C leaves open", call.line)
 
     def is_own(self, name: str) -> bool:

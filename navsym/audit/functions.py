@@ -18,7 +18,6 @@ from navsym.audit.values import (
     Value,
     add,
     as_real,
-    cells_of,
     constant_of,
     cross_product,
     demand,
@@ -162,7 +161,7 @@ def join_named(name: str, values: Sequence[Value]) -> Value:
     """``np.hstack([a, b])`` and its like; a vector is a row of a matrix, and is joined with vectors to one."""
     sizes = {len(value.shape) if isinstance(value, Array) else 0 for value in values}
     if sizes == {1} and name in ("hstack", "concatenate"):
-        cells = tuple(c for value in values for c in cells_of(value))
+        cells = tuple(c for value in values for c in value.cells)
         return Array((len(cells),), cells)
     known = {"row": {0, 1, 2}, "vstack": {1, 2}, "hstack": {2}, "concatenate": {2}}.get(name, set())
     forbid(not sizes <= known, f"{name} of arrays of different shapes")
@@ -206,7 +205,7 @@ def filled(shape: tuple[int, ...], number: int) -> Array:
 
 def sizes_of(unit: Unit, *values: Value) -> tuple[int, ...]:
     """The shape that arguments give: numbers, or a tuple of them."""
-    numbers = [constant_of(cell) for value in values for cell in cells_of(value)]
+    numbers = [constant_of(cell) for value in values for cell in value.cells]
     forbid(any(n is None or n.denominator != 1 for n in numbers), "a size that is no constant")
     sizes = tuple(int(n) for n in numbers if n is not None)
     return sizes * 2 if unit.language == "matlab" and len(sizes) == 1 else sizes
@@ -283,7 +282,7 @@ def make_matrix(unit: Unit, *values: Value) -> Value:
 
 def make_quaternion(unit: Unit, *values: Value) -> Value:
     """From w, i, j and k, or from w and the vector."""
-    w, *cells = (cell for value in values for cell in cells_of(value))
+    w, *cells = (cell for value in values for cell in value.cells)
     forbid(len(cells) != 3, "a quaternion of other than four numbers")
     return Quaternion((4,), (*cells, w))
 
@@ -310,10 +309,6 @@ def rotation_of(unit: Unit, value: Value) -> Value:
     quaternion, axes = require_quaternion(unit, value), identity_array(3, 3)
     cells = (c for i in range(3) for c in rotate(quaternion, axes.row(i)).cells)
     return transpose(Array((3, 3), tuple(cells)), True)
-
-
-def transposed(unit: Unit, value: Value) -> Value:
-    return transpose(value, unit.rules.matrix)
 
 
 def as_another(unit: Unit, value: Value) -> Value:
@@ -348,7 +343,8 @@ TABLE: tuple[Row, ...] = (
     ("ones", (1, 2), ARRAYS, "", lambda unit, *values: filled(sizes_of(unit, *values), 1)),
     ("array asarray", (1,), ARRAYS, "", lambda unit, value: value),
     ("copy", (1,), ARRAYS, ALL, lambda unit, value: value), ("eval", (1,), "", OTHERS, lambda unit, value: value),
-    ("transpose", (1,), ARRAYS, ALL, transposed), ("T", (1,), "", ALL, transposed),
+    *((name, (1,), where, ALL, lambda unit, value: transpose(value, unit.rules.matrix))
+      for name, where in (("transpose", ARRAYS), ("T", ""))),
     ("norm", (1,), ARRAYS, OTHERS, norm_of), ("linalg.norm", (1,), ARRAYS, "", norm_of),
     ("squaredNorm norm_squared", (1,), "", OTHERS, lambda unit, value: square_sum(value)),
     ("normalized unit", (1,), "", OTHERS, normalize), ("normalize", (1,), "", "c matlab rust", normalize),

@@ -23,12 +23,9 @@ OTHERS: dict[str, tuple[str, ...]] = {"~=": ("compare", "!="), "&": ("both",), "
 class Reader(SourceReader):
     """Walks the syntax tree of MATLAB."""
 
+    VALUE = ("assignment", "right")
     UNARY = SourceReader.UNARY | {"~": "not"}
     OPERATORS = SourceReader.OPERATORS | {sign: ("op", meaning) for sign, meaning in SIGNS.items()} | OTHERS
-
-    @staticmethod
-    def find_value(node: Any) -> Any:
-        return field_of(node, "right") if node.type == "assignment" else None
 
     def read_file(self, root: Any) -> None:
         """The functions of a source in MATLAB."""

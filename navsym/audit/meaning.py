@@ -11,7 +11,7 @@ from navsym.audit.form import spell_entry
 from navsym.audit.names import Names, squeeze
 from navsym.audit.questions import Entry
 from navsym.audit.sources import Source
-from navsym.audit.values import Array, Scalar, cells_of, places_of
+from navsym.audit.values import Scalar, places_of
 from navsym.core.errors import DomainError
 from navsym.language.dimensions import infer_units, list_places, print_part
 from navsym.language.shapes import Shape
@@ -98,8 +98,7 @@ def list_formulas(sources: Sequence[Source], names: Names) -> Iterator[tuple[str
                     sign = test.sign if test.sign in RELATIONS else "="
                     lines.append((test.line, build(sign, (test.left, test.right))))
             if (value := case.returned) is not None:
-                places = places_of(value.shape) if isinstance(value, Array) else [()]
-                for place, cell in zip(places, cells_of(value), strict=True):
+                for place, cell in zip(places_of(value.shape), value.cells, strict=True):
                     if isinstance(cell, Scalar):
                         written[cell.tree, "return", place] = cell.line or source.function.line
         for (tree, name, place), line in written.items():

@@ -16,7 +16,7 @@ from navsym.audit.form import Function, Part, Unit, mentioned_in, names_in, spel
 from navsym.audit.names import squeeze
 from navsym.audit.questions import Entry, NotThereError
 from navsym.audit.sources import Source, read_expression
-from navsym.audit.values import Array, Cell, Scalar, Unread, Unreadable, Value, cells_of
+from navsym.audit.values import Array, Cell, Scalar, Unread, Unreadable, Value
 from navsym.audit.writes import written_outside
 from navsym.claims.verdict import PROVED
 from navsym.core.errors import NavsymError
@@ -150,11 +150,8 @@ def list_words(source: Source, expected: Tree) -> Words:
     known = dict.fromkeys([*first, *sorted(arrays | names_in(*body) | {a.name for a in source.function.arguments})])
     scalars = [name for name, variable in variables.items() if variable.shape == () and not {*"(@"} & {*name}]
     entries = [s for s in source.names.spellings.values() if s[-1] in ")]"]
-    return Words(
-        tuple(name for name in known if name in arrays),
-        tuple(dict.fromkeys([*spelled, *scalars, *entries]))[:MOST_NAMES],
-        tuple(name for name in known if name not in arrays),
-    )
+    of_arrays, others = (tuple(name for name in known if (name in arrays) is kind) for kind in (True, False))
+    return Words(of_arrays, tuple(dict.fromkeys([*spelled, *scalars, *entries]))[:MOST_NAMES], others)
 
 
 @dataclass(frozen=True, slots=True)
@@ -373,12 +370,12 @@ class Gap:
 
     def __call__(self, machine: Evaluator, part: Part) -> Value:
         own = machine.value(replace(part))  # which has no edit
-        cells = cells_of(own)
+        cells = own.cells
         trials = [self.attempt(machine, number, own) for number in range(len(self.parts))]
         symbols = list[Cell]()
         for at, cell in enumerate(cells):
             name = f"{self.letters}{len(self.trials)}"
-            self.trials[name] = [None if trial is None else cells_of(trial)[at] for trial in trials]
+            self.trials[name] = [None if trial is None else trial.cells[at] for trial in trials]
             symbols.append(cell if isinstance(cell, Unread) else replace(cell, tree=build_symbol(name)))
         return type(own)(own.shape, tuple(symbols)) if isinstance(own, Array) else symbols[0]
 
@@ -401,7 +398,7 @@ class Gap:
             is_split = len(machine.conditions) > count
             del machine.conditions[count:], machine.other_ways[others:]
             machine.steps = steps
-        if is_split or getattr(value, "shape", ()) != getattr(own, "shape", ()):
+        if is_split or value.shape != own.shape:
             self.doubtful.add(number)
             return None
         return value

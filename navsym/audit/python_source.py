@@ -51,7 +51,7 @@ class Reader(SourceReader):
     computed : members that a class of the file computes when they are read or set; ANY where it may be every one
     """
 
-    HEAD, TAIL = "(", ")"
+    HEAD, TAIL, VALUE = "(", ")", ("expression_statement", "")
 
     rebound: set[str] = field(default_factory=set)
     changed: set[str] = field(default_factory=set)
@@ -61,10 +61,6 @@ class Reader(SourceReader):
     made: set[str] = field(default_factory=set)
     computed: set[str] = field(default_factory=set)
     OPERATORS = OPERATORS | {sign: ("op", sign) for sign in ("//", "@", "**")}
-
-    @staticmethod
-    def find_value(node: Any) -> Any:
-        return named(node)[0] if node.type == "expression_statement" else None
 
     def read_file(self, root: Any) -> None:
         """The functions and constants of a source in Python."""
@@ -374,14 +370,11 @@ def bound_by(node: Any) -> list[str]:
 def is_numeric(node: Any) -> bool:
     """True for an import of numbers and their functions only, under the names by which they are known."""
     module = field_of(node, "module_name")
-    return (
-        text_of(module) in MODULES
-        if module is not None
-        else all(
-            text_of(field_of(name, "name") or name) in NUMERIC or text_of(field_of(name, "alias") or name) not in NAMES
-            for name in node.children_by_field_name("name")
-        )
-    )
+    if module is not None:
+        return text_of(module) in MODULES
+    names = node.children_by_field_name("name")
+    pairs = [[text_of(field_of(name, key) or name) for key in ("name", "alias")] for name in names]
+    return all(meant in NUMERIC or own not in NAMES for meant, own in pairs)
 
 
 def may_be_given(node: Any) -> bool:

@@ -26,7 +26,6 @@ from navsym.audit.values import (
     Value,
     Variable,
     add,
-    cells_of,
     identity_array,
     make_array,
     map_cells,
@@ -234,7 +233,7 @@ def list_dead(question: Question) -> list[Entry]:
                 continue
             if len(entries) > MOST_ENTRIES:
                 raise DomainError("expected fewer outputs and cases; got too many; ask for one", where=question.where)
-            cells = [cells_of(asking.resolve(question.keys["of"], "of")) for asking in (one, two)]
+            cells = [asking.resolve(question.keys["of"], "of").cells for asking in (one, two)]
             for row, (cell, other) in enumerate(zip(*cells, strict=True)):
                 source = one.repeat("of", row, cell)[0]
                 moved = other if isinstance(other, Unread) else Scalar(replace(other.tree, twin))
@@ -276,10 +275,10 @@ class Asking:
         where = self.place(key)
         if isinstance(reference, list):
             values = [self.resolve(item, key) for item in as_list(reference, where)]
-            shapes = {value.shape if isinstance(value, Array) else () for value in values}
+            shapes = {value.shape for value in values}
             if len(shapes) != 1:
                 raise ShapeError("expected rows of one length; got a ragged list; correct it", where=where)
-            return Array((len(values), *next(iter(shapes))), tuple(c for v in values for c in cells_of(v)))
+            return Array((len(values), *next(iter(shapes))), tuple(c for v in values for c in v.cells))
         if (parts := self.split(reference, where)) is not None:
             return self.output(*parts, where)
         if not isinstance(reference, (str, int)) or isinstance(reference, bool):
@@ -335,12 +334,12 @@ class Asking:
         if isinstance(code, Unread) or isinstance(expected, Unread):
             is_, should = (v if isinstance(v, Unread) else Scalar(ONE) for v in (code, expected))
             return [Entry((1, 1), is_, should, self.conditions, asking=self, key=key)]
-        shapes = [v.shape if isinstance(v, Array) else () for v in (code, expected)]
+        shapes = [v.shape for v in (code, expected)]
         if shapes[0] != shapes[1] and not (all(shapes) and is_alike(*shapes)):
             got = " and ".join(str(list(s)) if s else "a number" for s in shapes)
             raise ShapeError(f"expected two sides of one shape; got {got}; correct one", where=self.place(key))
         entries = []
-        cells = zip(places_of(shapes[0]), cells_of(code), cells_of(expected), strict=True)
+        cells = zip(places_of(shapes[0]), code.cells, expected.cells, strict=True)
         for number, (place, is_, should) in enumerate(cells):
             if upper and len(place) == 2 and place[0] > place[1] and isinstance(is_, Unset):
                 continue  # the lower half of a symmetric matrix, which the code leaves alone
@@ -362,9 +361,9 @@ class Asking:
             asking = Asking(self.question, {**self.cases, source.name: case}, ())
             if is_direct:
                 before, now = (a.output(source, name, self.question.where) for a in (self, asking))
-                if getattr(before, "shape", ()) != getattr(now, "shape", ()):
+                if before.shape != now.shape:
                     return Unread(0, "another shape"), expected
-                return cells_of(now)[number if len(listed) == 1 else 0], expected
+                return now.cells[number if len(listed) == 1 else 0], expected
             entries: list[Entry] = getattr(asking, f"ask_{self.question.kind}")()
             entry = entries[number] if number < len(entries) else None
             return (entry.code, entry.expected) if entry else (Unread(0, "another shape"), expected)
@@ -386,7 +385,7 @@ class Asking:
         return self.pair(self.side("left"), self.side("right"), "left")
 
     def ask_jacobian(self) -> list[Entry]:
-        of, by, given = cells_of(self.side("of")), self.inputs(self.question.keys["by"], "by"), self.side("is")
+        of, by, given = self.side("of").cells, self.inputs(self.question.keys["by"], "by"), self.side("is")
         shape = (len(of), len(by))
         if isinstance(given, Unread):
             given = Array(shape, (given,) * (len(of) * len(by)))
@@ -395,7 +394,7 @@ class Asking:
             message = f"expected {len(of)} rows and {len(by)} columns; got {got}; correct of or by"
             raise ShapeError(message, where=self.place("is"))
         expected = make_array(shape, lambda i, j: derivative(of[i], by[j]))
-        return self.pair(Array(shape, cells_of(given)), expected, "is")
+        return self.pair(Array(shape, given.cells), expected, "is")
 
     def ask_covariance(self) -> list[Entry]:
         F, Q, new = (self.matrix(key) for key in ("F", "Q", "is"))

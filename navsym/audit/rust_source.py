@@ -60,16 +60,12 @@ class Reader(SourceReader):
     defined      : the types and macros of the file
     """
 
-    HEAD = "const A: f64 = "
+    HEAD, VALUE = "const A: f64 = ", ("const_item", "value")
     REALS = OPEN_TYPES
     OPEN = ("if_expression", "for_expression", "block", "expression_statement")
 
     foreign: set[str] = field(default_factory=set)
     defined: set[str] = field(default_factory=set)
-
-    @staticmethod
-    def find_value(node: Any) -> Any:
-        return field_of(node, "value") if node.type == "const_item" else None
 
     def read_file(self, root: Any) -> None:
         """Functions, constants and fields, also inside modules and implementations."""
@@ -265,9 +261,8 @@ class Reader(SourceReader):
                 words = {word.removeprefix(OWNER) for place in self.places.get(last, ()) for word in place} | {*INSIDE}
                 if last in self.unit.variables and head in words:
                     return self.part("name", node, last)
-                return self.part(
-                    "name", node, "M_PI" if re.fullmatch(r"((std|core)::)?(f32::|f64::)?consts::PI", name) else name
-                )
+                is_pi = re.fullmatch(r"((std|core)::)?(f32::|f64::)?consts::PI", name)
+                return self.part("name", node, "M_PI" if is_pi else name)
             case "reference_expression":
                 value = self.expression(field_of(node, "value"))
                 is_written = any(child.type == "mutable_specifier" for child in node.children)

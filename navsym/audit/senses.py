@@ -21,12 +21,12 @@ from navsym.audit.decide import (
     decide_entry,
     differentiate,
     draw_points,
-    holds_at,
+    list_values,
     measure,
     value_at,
 )
 from navsym.audit.questions import SENSES, Entry, Question
-from navsym.audit.values import Array, Scalar, cells_of, make_array, matrix_product, transpose
+from navsym.audit.values import Array, Scalar, make_array, matrix_product, transpose
 from navsym.claims.verdict import CERTIFIED, OPEN, PROVED, REFUTED, Status
 from navsym.core.errors import NavsymError
 from navsym.language.polynomials import to_polynomial
@@ -308,7 +308,7 @@ def read_noise(table: Table) -> Iterator[Reading]:
     sides = []
     for side in (0, 1):
         V = Array((m, n), tuple(Scalar(table.pair(k)[side]) for k in range(m * n)))
-        sides.append(cells_of(matrix_product(matrix_product(V, N), transpose(V, True))))
+        sides.append(matrix_product(matrix_product(V, N), transpose(V, True)).cells)
     upper = [i * m + j for i, j in combinations_with_replacement(range(m), 2)]
     pairs = [(sides[0][k].tree, sides[1][k].tree) for k in upper]  # type: ignore[union-attr]
     note = f"V N V' is equal for every {'' if is_full else 'diagonal '}covariance N"
@@ -350,17 +350,13 @@ def find_values(table: Table) -> tuple[Balls, Balls] | None:
     box = {name: player.read_range(table.scope.ranges[name]) for name in names}
     terms = [player.parse(print_tree(tree)) for tree in sides]
     states = [x.args[0] for x in table.by if x.args[0] in box]
-    for point in draw_points(box, table.scope):
-        point |= dict.fromkeys(states, point[states[0]]) if states else {}
-        if not all(player.is_inside(("number", value), box[name]) for name, value in point.items()):
-            continue
-        place = {name: player.Jet(player.arb(value)) for name, value in point.items()}
-        balls = [player.value_of(term, place) for term in terms]
-        is_inside = all(value_at(relation, point) == 0 for relation in table.scope.relations)
-        is_inside &= all(holds_at(condition, place) for condition in table.scope.conditions)
-        if is_inside and all(ball.is_finite() for ball in balls):
-            code, expected = ([balls[2 * (i * n) + side :][: 2 * n : 2] for i in range(n)] for side in (0, 1))
-            return code, expected
+    drawn = draw_points(box, table.scope)
+    points = (point | dict.fromkeys(states, point[states[0]]) if states else point for point in drawn)
+    points = (p for p in points if all(player.is_inside(("number", value), box[name]) for name, value in p.items()))
+    points = (p for p in points if all(value_at(relation, p) == 0 for relation in table.scope.relations))
+    for _, balls in list_values(terms, points, table.scope.conditions):
+        code, expected = ([balls[2 * (i * n) + side :][: 2 * n : 2] for i in range(n)] for side in (0, 1))
+        return code, expected
     return None
 
 

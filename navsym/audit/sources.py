@@ -74,18 +74,15 @@ class Source:
         reading, unit = self.read(), self.unit
         names = {name.split(".")[-1] for f in reading.functions for name in names_in(*f.body)}
         extents = [f.extent for f in reading.functions]
-        near = (
-            (word, any(a <= at < b for a, b in extents) or name.split(".")[-1] in names)
-            for word, at, name in unit.taken
-        )
+
+        def is_near(at: int, name: str) -> bool:
+            return name.split(".")[-1] in names or any(a <= at < b for a, b in extents)
+
         apart = {name for pair in reading.apart if not pair & self.distinct for name in pair}
         scalars = reading.scalars - {self.names.spellings.get(n, n) for n in self.names.declared}
-        several = {
-            "taken as real: ": {word for word, is_near in near if is_near},
-            "sizes: scalar: ": scalars,
-            "apart in memory: ": apart,
-            "not overridden: ": reading.kept,
-        }
+        real = {word for word, at, name in unit.taken if is_near(at, name)}
+        several = {"taken as real: ": real, "sizes: scalar: ": scalars, "apart in memory: ": apart}
+        several["not overridden: "] = reading.kept
         return [head + ", ".join(sorted(words)) for head, words in several.items() if words]
 
     def symbol(self, spelling: str) -> Tree:
@@ -372,14 +369,16 @@ def take_lines(unit: Unit, function: Function, first: int, last: int, where: str
     again is no number any more, so that what depends on it stays unread.
     """
     body, before = function.body, list[Part]()
+
+    def is_near(part: Any) -> bool:
+        return isinstance(part, Part) and part.line <= last and last_line(unit, part) >= first
+
     while True:
-        near = [s for s in body if s.line <= last and last_line(unit, s) >= first]
+        near = [s for s in body if is_near(s)]
         if near and all(first <= s.line and last_line(unit, s) <= last for s in near):
             break
         blocks = [part for s in near if len(near) == 1 for part in s.parts if isinstance(part, tuple)]
-        inner = [
-            b for b in blocks if any(isinstance(s, Part) and s.line <= last and last_line(unit, s) >= first for s in b)
-        ]
+        inner = [block for block in blocks if any(map(is_near, block))]
         if len(inner) != 1:
             got = "half of one" if near else "none"
             message = f"expected whole statements of one block of {function.name} in lines {first} to {last}; got {got}"

@@ -118,11 +118,8 @@ def find_odd(node: Any) -> str:
     known = SLOTS.get(node.type, frozenset())
     for i, child in enumerate(node.children):
         slot = node.field_name_for_child(i) or child.type.replace("\n", "NL")
-        if (
-            child.type not in COMMENTS
-            and slot not in known
-            and not ("*" in known and child.is_named and slot == child.type)
-        ):
+        is_known = slot in known or ("*" in known and child.is_named and slot == child.type)
+        if child.type not in COMMENTS and not is_known:
             return str(child.type).replace("_", " ")
         if child.type in INNER and (odd := find_odd(child)):
             return odd
@@ -221,13 +218,14 @@ class SourceReader:
 
     A language has ``read_file``, ``read_statement``, ``read_expression``, which give None for what is outside of it,
     ``places_open_to``, the places whose names a bare name may mean at a node, or a member of the own object,
-    ``effect``, what an expression writes that stands alone, and ``find_value``, the expression in the tree of HEAD, a
-    text and TAIL. A node with an error in it is refused as a whole, unless it is a statement of a kind in OPEN, whose
-    own statements are looked at.
+    ``effect``, what an expression writes that stands alone, and VALUE, the way to the expression in the tree of HEAD, a
+    text and TAIL: the kind of a statement, and fields, of which an empty one stands for the first part. A node with an
+    error in it is refused as a whole, unless it is a statement of a kind in OPEN, whose own statements are looked at.
     """
 
     HEAD: ClassVar[str] = "a_ = "
     TAIL: ClassVar[str] = ";"
+    VALUE: ClassVar[tuple[str, ...]]
     OPEN: ClassVar[tuple[str, ...]] = ("if_statement", "for_statement")
     OPERATORS: ClassVar[dict[str, tuple[str, ...]]] = OPERATORS
     UNARY: ClassVar[dict[str, str]] = UNARY
@@ -235,7 +233,6 @@ class SourceReader:
 
     read_statement: ClassVar[Any]
     read_expression: ClassVar[Any]
-    find_value: ClassVar[Any]
     effect: ClassVar[Any]
     places_open_to: ClassVar[Any]
 
@@ -251,7 +248,9 @@ class SourceReader:
         reader = cls(unit, -len(cls.HEAD))
         root = reader.parse(f"{cls.HEAD}{text}{cls.TAIL}".encode())
         nodes = named(root)
-        value = cls.find_value(nodes[0]) if len(nodes) == 1 and not root.has_error else None
+        value = nodes[0] if [node.type for node in nodes] == [cls.VALUE[0]] and not root.has_error else None
+        for name in cls.VALUE[1:]:
+            value = field_of(value, name) if name else next(iter(named(value)), None)
         return Part("refused", 1, ("no expression",)) if value is None else reader.expression(value)
 
     def parse(self, source: bytes) -> Any:

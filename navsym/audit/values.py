@@ -10,7 +10,7 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from itertools import product
-from typing import TypeVar
+from typing import ClassVar, TypeVar
 
 from navsym.audit.form import Part, Unit
 from navsym.language.tree import (
@@ -70,8 +70,20 @@ def demand(value: object, kind: type[Kind], why: str) -> Kind:
     return value
 
 
+class Single:
+    """What is one cell, as arrays have several."""
+
+    __slots__ = ()
+    shape: ClassVar[Index] = ()
+
+    @property
+    def cells(self) -> tuple[Cell, ...]:
+        """The cell itself."""
+        return (self,)  # type: ignore[return-value]
+
+
 @dataclass(frozen=True, slots=True, eq=False)
-class Scalar:
+class Scalar(Single):
     """A number as a formula of the inputs.
 
     number : "int", "unsigned" or "real"
@@ -86,7 +98,7 @@ class Scalar:
 
 
 @dataclass(frozen=True, slots=True, eq=False)
-class Unread:
+class Unread(Single):
     """A value that depends on a refused line."""
 
     line: int
@@ -138,11 +150,6 @@ def is_integer(cell: Cell) -> bool:
 def is_truth(value: object) -> bool:
     """True for True and False of Python."""
     return isinstance(value, Scalar) and value.number == "bool"
-
-
-def cells_of(value: Value) -> tuple[Cell, ...]:
-    """The cells of a value."""
-    return value.cells if isinstance(value, Array) else (value,)
 
 
 @dataclass(slots=True, eq=False)
@@ -394,7 +401,7 @@ def quaternion_product(a: Quaternion, b: Quaternion) -> Quaternion:
     (u, w), (v, s) = ((Array((3,), q.cells[:3]), q.cells[3]) for q in (a, b))
     vector = map_cells(total, map_cells(multiply, w, v), map_cells(multiply, s, u), cross_product(u, v))
     real = map_cells(lambda x, y: add(x, minus(y)), map_cells(multiply, w, s), matrix_product(u, v))
-    return Quaternion((4,), (*cells_of(vector), *cells_of(real)))
+    return Quaternion((4,), (*vector.cells, *real.cells))
 
 
 def rotate(quaternion: Value, vector: Value) -> Array:
@@ -408,7 +415,7 @@ def rotate(quaternion: Value, vector: Value) -> Array:
 
 def square_sum(value: Value) -> Cell:
     """The sum of the squares of all cells."""
-    return map_cell(lambda *trees: total(*(raise_to(t, build_number(2)) for t in trees)), *cells_of(value))
+    return map_cell(lambda *trees: total(*(raise_to(t, build_number(2)) for t in trees)), *value.cells)
 
 
 def identity_array(m: int, n: int) -> Array:
@@ -445,9 +452,8 @@ def whole_kind(text: str) -> str:
 
 def number_type(text: str) -> str:
     """The type of the numbers in a matrix of Eigen, which has one for each size; other types as they are."""
-    found = re.fullmatch(
-        r"(?:\w+::)*(?:Row)?(?:Matrix|Vector|Quaternion)\w*?(?:([fd])|<(\w+)\b.*>)", text.replace(" ", "")
-    )
+    pattern = r"(?:\w+::)*(?:Row)?(?:Matrix|Vector|Quaternion)\w*?(?:([fd])|<(\w+)\b.*>)"
+    found = re.fullmatch(pattern, text.replace(" ", ""))
     return text if found is None else found[2] or {"f": "float", "d": "double"}[found[1]]
 
 
@@ -466,7 +472,7 @@ def does_fit(cell: Scalar, kind: str) -> bool:
 
 def require_fit(unit: Unit, value: Value) -> Value:
     """The value, where no constant among its integers is past the ends of its type."""
-    for cell in cells_of(value) if unit.rules.integer else ():
+    for cell in value.cells if unit.rules.integer else ():
         if isinstance(cell, Scalar) and cell.number in LIMITS and not does_fit(cell, cell.number):
             raise Unreadable("integers that do not fit their type")
     return value
@@ -495,16 +501,11 @@ def combine(unit: Unit, sign: str, a: Value, b: Value) -> Value:
     return require_fit(unit, result if sign != "-" else require_no_wrap(result))
 
 
-def is_natural(cell: Scalar) -> bool:
-    """True for a constant that is not below zero."""
-    return cell.tree.head == NUMBER and cell.tree.args[0] >= 0
-
-
 def require_one_sign(*values: Value) -> None:
     """Refuse unsigned numbers beside one that may be below zero, which C takes for a large one."""
-    whole = [cell for value in values for cell in cells_of(value) if isinstance(cell, Scalar) and cell.number in LIMITS]
-    if any(cell.number == "unsigned" for cell in whole):
-        forbid(not all(cell.number == "unsigned" or is_natural(cell) for cell in whole), WRAP)
+    whole = [cell for value in values for cell in value.cells if isinstance(cell, Scalar) and cell.number in LIMITS]
+    others = [constant_of(cell) for cell in whole if cell.number != "unsigned"]
+    forbid(len(others) < len(whole) and any(number is None or number < 0 for number in others), WRAP)
 
 
 def require_no_wrap(value: Value) -> Value:

@@ -178,10 +178,8 @@ def refuse(part: object) -> NoReturn:
         raise float_error(float(part), "")
     kind = type(part).__name__
     text = quote(str(part)) if not isinstance(part, str) else quote(part)
-    raise ExpressionSyntaxError(
-        f"expected numbers, names, + - * / **, pi and the functions of the language; got {kind} {text}; "
-        "rewrite it exactly in these terms"
-    )
+    expected = "numbers, names, + - * / **, pi and the functions of the language"
+    raise ExpressionSyntaxError(f"expected {expected}; got {kind} {text}; rewrite it exactly in these terms")
 
 
 def float_error(value: float, where: str) -> NavsymError:
@@ -220,7 +218,8 @@ def list_limits(e: sp.Basic) -> list[tuple[sp.Basic, ...]]:
     """The variables of a sum, an integral, a limit or a derivative, each with its ends or its point."""
     if isinstance(e, sp.Limit):
         if str(e.args[3]) != "+-" and not e.args[2].is_infinite:
-            refuse_side(e)
+            message = f'expected a limit from both sides; got {quote(str(e))}; write dir="+-"'
+            raise ExpressionSyntaxError(message)
         return [tuple(e.args[1:3])]
     if isinstance(e, sp.Derivative):
         return [(x,) for x, count in e.variable_count for _ in range(int(count))]
@@ -228,11 +227,6 @@ def list_limits(e: sp.Basic) -> list[tuple[sp.Basic, ...]]:
         message = f"expected both ends of each variable; got {quote(str(e))}; write them, as in (x, 0, 1)"
         raise ExpressionSyntaxError(message)
     return [tuple(limits) for limits in e.limits]
-
-
-def refuse_side(e: sp.Basic) -> NoReturn:
-    """Raise the error for a limit from one side."""
-    raise ExpressionSyntaxError(f'expected a limit from both sides; got {quote(str(e))}; write dir="+-"')
 
 
 def show_end(end: sp.Basic, trees: Mapping[Any, Tree]) -> Tree:

@@ -53,14 +53,15 @@ def read_parameter(name: str, value: Any, where: str) -> Parameter:
     """One declaration: a range, or a word about the sign."""
     if isinstance(value, list):
         lower, upper = read_range(value, where)
-        return Parameter(name, symbol(name, where=where, **assumptions_of_range(lower)), lower, upper, "range")
+        is_positive = sign_of_constant(lower) == 1
+        own = symbol(name, where=where, positive=is_positive, nonnegative=not is_positive and lower == 0)
+        return Parameter(name, own, lower, upper, "range")
     if not isinstance(value, str) or value not in SIGNS:
         got = quote(value) if isinstance(value, str) else describe_value(value)
         hint = f": {suggest_nearest(value, SIGNS)}" if isinstance(value, str) else ""
         expected = f'a range such as ["1/2", "2"] or one of {", ".join(SIGNS)}'
-        raise ExpressionSyntaxError(
-            f"expected {expected}; got {got}; {advise_on_declaration(value, name)}{hint}", where=where
-        )
+        remedy = f"{advise_on_declaration(value, name)}{hint}"
+        raise ExpressionSyntaxError(f"expected {expected}; got {got}; {remedy}", where=where)
     made = symbol(name, where=where, **SIGNS[value])
     return Parameter(name, made, None, None, value)  # type: ignore[arg-type]
 
@@ -107,13 +108,6 @@ def cut_text(value: object) -> str:
     """An expression of our own making, cut for a message."""
     text = str(value)
     return text if len(text) <= 60 else f"{text[:60]}..."
-
-
-def assumptions_of_range(lower: Expr) -> dict[str, bool]:
-    """What a range with this lower end says of the sign."""
-    if sign_of_constant(lower) == 1:
-        return {"positive": True}
-    return {"nonnegative": True} if lower == 0 else {}
 
 
 def symbols_of(parameters: Mapping[str, Parameter]) -> dict[str, Symbol]:

@@ -16,11 +16,11 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from fractions import Fraction
 from itertools import chain, permutations
-from math import prod
 from typing import Any
 
 from navsym.core.errors import DomainError
 from navsym.core.units import Powers, combine, print_unit, read_unit
+from navsym.language.domains import rational_value
 from navsym.language.names import FUNCTIONS
 from navsym.language.printer import TIGHT, WHOLE, Text, Writer
 from navsym.language.shapes import Shape
@@ -166,9 +166,8 @@ class Inference:
             self.system.equate(x, y)
         except ConflictError:
             got = f"{print_part(left)} in {self.show(x)} and {print_part(right)} in {self.show(y)}"
-            raise DomainError(
-                f"expected {what} of one unit; got {got}; correct one of them", where=self.where
-            ) from None
+            message = f"expected {what} of one unit; got {got}; correct one of them"
+            raise DomainError(message, where=self.where) from None
         return x
 
     def plain(self, x: Cell, part: Tree, what: str) -> None:
@@ -184,9 +183,8 @@ class Inference:
         """A unit in words."""
         reduced = self.system.reduce(form)
         powers: Powers = {key[1]: n for key, n in reduced.items() if key[0] == "unit"}
-        names = [
-            f"the unit of {key[1]}" + ("" if n == 1 else f"^{n}") for key, n in reduced.items() if key[0] == "name"
-        ]
+        unknown = [(key[1], n) for key, n in reduced.items() if key[0] == "name"]
+        names = [f"the unit of {name}" + ("" if n == 1 else f"^{n}") for name, n in unknown]
         return " ".join([print_unit(powers), *names]) + " times the base unit" * self.scales
 
     def total(self, cells: Iterable[tuple[Cell, Tree]], what: str) -> Cell:
@@ -239,20 +237,17 @@ class Inference:
         if head in BINDERS:
             others = [units[0][0] for units in inner[1:]]
             return [[self.bound(part, [cell, *others]) for cell in row] for row in inner[0]]
-        step: Callable[[Tree, list[Units]], Units] | None = getattr(self, f"step_{STEPS.get(head, head)}", None)
-        if step is not None:
-            return step(part, inner)
-        if head in FUNCTIONS:
+        if head in STEPS:
+            return STEPS[head](self, part, inner)
+        if head in (*FUNCTIONS, "erf", "floor"):
             self.plain(inner[0][0][0], part.args[0], head)
             return [[{}]]
         return inner[0] if inner else [[{}]]
 
     def each(self, part: Tree, inner: list[Units], what: str) -> Units:
         """Entry by entry the one unit of all parts."""
-        return [
-            [self.total(zip((u[i][j] for u in inner), part.args, strict=True), what) for j in range(len(inner[0][0]))]
-            for i in range(len(inner[0]))
-        ]
+        cells = [[*zip(*rows, strict=False)] for rows in zip(*inner, strict=False)]
+        return [[self.total(zip(cell, part.args, strict=True), what) for cell in row] for row in cells]
 
     def product(self, inner: list[Units]) -> Units:
         """Numbers and at most one array."""
@@ -261,7 +256,7 @@ class Inference:
 
     def power(self, part: Tree, base: Cell, exponent: Cell) -> Cell:
         """A power: with an exponent that is no number the base has no unit, unless the exponent is a whole number."""
-        if (number := evaluate(part.args[1])) is not None:
+        if (number := rational_value(part.args[1])) is not None:
             return None if base is None else scale(base, number)
         self.plain(exponent, part.args[1], "an exponent")
         if all(map(self.is_whole, list_names(part.args[1]))):
@@ -291,30 +286,16 @@ class Inference:
             return {("name", f"power {self.numbers}"): Fraction(1)}
         return value
 
+    def alike(self, column: Units, part: Tree) -> Cell:
+        """The one unit of the entries of a column."""
+        return self.total(((row[0], part) for row in column), "entries")
+
     # Functions, by the name of the head
-
-    def step_abs(self, part: Tree, inner: list[Units]) -> Units:
-        return inner[0]
-
-    def step_sqrt(self, part: Tree, inner: list[Units]) -> Units:
-        cell = inner[0][0][0]
-        return [[None if cell is None else scale(cell, Fraction(1, 2))]]
-
-    def step_sign(self, part: Tree, inner: list[Units]) -> Units:
-        return [[{}]]
-
-    def step_erf(self, part: Tree, inner: list[Units]) -> Units:
-        self.plain(inner[0][0][0], part.args[0], part.head)
-        return [[{}]]
-
-    def step_cov(self, part: Tree, inner: list[Units]) -> Units:
-        return self.times(inner[0], self.step_transpose(part, inner[1:] or inner), part)
 
     def step_expm(self, part: Tree, inner: list[Units]) -> Units:
         """Every power of the matrix has its units; an entry that no power has is an unknown."""
         A, square = inner[0], self.times(inner[0], inner[0], part)
-        unit: Units = [[{} if i == j else None for j in range(len(A))] for i in range(len(A))]
-        whole = self.each(build("+", (part, part, part)), [A, square, unit], "powers of a matrix")
+        whole = self.each(build("+", (part, part, part)), [A, square, diagonal([{}] * len(A))], "powers of a matrix")
         self.numbers += 1
         name = f"expm {self.numbers}"
         return [
@@ -326,71 +307,27 @@ class Inference:
         cell = self.total(((units[0][0], p) for units, p in zip(inner, part.args, strict=True)), "arguments")
         return [[{} if part.head in ONLY_ALIKE else cell]]
 
-    def step_where(self, part: Tree, inner: list[Units]) -> Units:
-        return [
-            [self.equate(x, y, "two cases", *part.args[1:]) for x, y in zip(*rows, strict=True)]
-            for rows in zip(*inner[1:], strict=True)
-        ]
-
     def step_index(self, part: Tree, inner: list[Units]) -> Units:
         places = [int(p.args[0]) - 1 for p in part.args[1:]]
         return [[inner[0][places[0]][places[1] if len(places) > 1 else 0]]]
 
-    def step_row(self, part: Tree, inner: list[Units]) -> Units:
-        return [[units[0][0] for units in inner]]
-
-    def step_matrix(self, part: Tree, inner: list[Units]) -> Units:
-        return [units[0] for units in inner]
-
-    def step_transpose(self, part: Tree, inner: list[Units]) -> Units:
-        return [list(column) for column in zip(*inner[0], strict=True)]
-
-    def step_at(self, part: Tree, inner: list[Units]) -> Units:
-        return self.times(inner[0], inner[1], part)
-
     def times(self, A: Units, B: Units, part: Tree) -> Units:
         """A matrix product, whose every entry is a sum."""
-        columns = [list(column) for column in zip(*B, strict=True)]
-        return [
-            [
-                self.total(((multiply(a, b), part) for a, b in zip(row, column, strict=True)), "terms")
-                for column in columns
-            ]
-            for row in A
-        ]
 
-    def step_dot(self, part: Tree, inner: list[Units]) -> Units:
-        return self.times(self.step_transpose(part, inner), inner[1], part)
+        def cell(row: list[Cell], column: list[Cell]) -> Cell:
+            return self.total(((multiply(a, b), part) for a, b in zip(row, column, strict=True)), "terms")
 
-    def step_norm(self, part: Tree, inner: list[Units]) -> Units:
-        return [[self.total(((row[0], part) for row in inner[0]), "entries")]]
+        columns = transpose(B)
+        return [[cell(row, column) for column in columns] for row in A]
 
     def step_cross(self, part: Tree, inner: list[Units]) -> Units:
-        self.step_norm(part.args[1], inner[1:])
+        self.alike(inner[1], part.args[1])
         return self.times(self.step_skew(part, inner), inner[1], part)
 
     def step_skew(self, part: Tree, inner: list[Units]) -> Units:
-        self.step_norm(part.args[0], inner)  # the entries of a vector in space have one unit
+        self.alike(inner[0], part.args[0])  # the entries of a vector in space have one unit
         x, y, z = (row[0] for row in inner[0])
         return [[None, z, y], [z, None, x], [y, x, None]]
-
-    def step_eye(self, part: Tree, inner: list[Units]) -> Units:
-        n = int(part.args[0].args[0])
-        return [[{} if i == j else None for j in range(n)] for i in range(n)]
-
-    def step_zeros(self, part: Tree, inner: list[Units]) -> Units:
-        rows, columns = int(part.args[0].args[0]), int(part.args[-1].args[0])
-        return [[None] * columns for _ in range(rows)]
-
-    def step_diag(self, part: Tree, inner: list[Units]) -> Units:
-        cells = [row[0] for units in inner for row in units]
-        return [[cell if i == j else None for j in range(len(cells))] for i, cell in enumerate(cells)]
-
-    def step_trace(self, part: Tree, inner: list[Units]) -> Units:
-        return [[self.total(((row[i], part) for i, row in enumerate(inner[0])), "entries")]]
-
-    def step_det(self, part: Tree, inner: list[Units]) -> Units:
-        return [[self.determinant(inner[0], part)]]
 
     def determinant(self, A: Units, part: Tree) -> Cell:
         """The unit of a determinant: each of its terms has it."""
@@ -401,9 +338,8 @@ class Inference:
         A = inner[0]
         whole = self.determinant(A, part)
         if whole is None:
-            return [
-                [{("name", f"{print_part(part)} {i} {j}"): Fraction(1)} for j in range(len(A))] for i in range(len(A))
-            ]
+            name, side = print_part(part), range(len(A))
+            return [[{("name", f"{name} {i} {j}"): Fraction(1)} for j in side] for i in side]
 
         def entry(i: int, j: int) -> Cell:
             minor = [[cell for c, cell in enumerate(row) if c != i] for r, row in enumerate(A) if r != j]
@@ -425,9 +361,6 @@ class Inference:
         by = scale(inner[1][0][0] or {}, Fraction(-times))
         return [[multiply(cell, by) for cell in row] for row in inner[0]]
 
-    def step_dot_(self, part: Tree, inner: list[Units]) -> Units:
-        return self.by_time(inner[0])
-
     def by_time(self, units: Units) -> Units:
         """A rate: the time is the symbol t, whose unit may be unknown."""
         rate = scale(self.symbol(TIME)[0][0] or {}, Fraction(-1))
@@ -437,9 +370,43 @@ class Inference:
 #: Heads of numbers, if their parts are numbers, and those whose numbers have the unit of their neighbours.
 PLAIN = {NUMBER, "pi", SUM, PRODUCT, POWER, *FUNCTIONS}
 NEIGHBOURS = {SUM, "where", *ONLY_ALIKE, *ALIKE, *RELATIONS}
-STEPS = {
-    "T": "transpose", "@": "at", "conj": "abs", **dict.fromkeys((*ONLY_ALIKE, *ALIKE), "alike"), "floor": "erf",
+#: Head of a call -> its units, from the call and the units of its parts.
+STEPS: dict[str, Callable[[Inference, Tree, list[Units]], Units]] = {
+    "sqrt": lambda s, _, u: [[None if u[0][0][0] is None else scale(u[0][0][0], Fraction(1, 2))]],
+    "sign": lambda s, _, u: [[{}]],
+    **dict.fromkeys(("abs", "conj"), lambda s, _, u: u[0]),
+    **dict.fromkeys((*ONLY_ALIKE, *ALIKE), Inference.step_alike),
+    **dict.fromkeys(("T", "transpose"), lambda s, _, u: transpose(u[0])),
+    "row": lambda s, _, u: [[units[0][0] for units in u]],
+    "matrix": lambda s, _, u: [units[0] for units in u],
+    "where": lambda s, part, u: [
+        [s.equate(x, y, "two cases", *part.args[1:]) for x, y in zip(*rows, strict=True)]
+        for rows in zip(*u[1:], strict=True)
+    ],
+    "eye": lambda s, part, _: diagonal([{}] * int(part.args[0].args[0])),
+    "diag": lambda s, _, u: diagonal([row[0] for units in u for row in units]),
+    "zeros": lambda s, part, _: [[None] * int(part.args[-1].args[0]) for _ in range(int(part.args[0].args[0]))],
+    "@": lambda s, part, u: s.times(u[0], u[1], part),
+    "dot": lambda s, part, u: s.times(transpose(u[0]), u[1], part),
+    "cov": lambda s, part, u: s.times(u[0], transpose(u[-1]), part),
+    "norm": lambda s, part, u: [[s.alike(u[0], part)]],
+    "trace": lambda s, part, u: [[s.total(((row[i], part) for i, row in enumerate(u[0])), "entries")]],
+    "det": lambda s, part, u: [[s.determinant(u[0], part)]],
+    "dot_": lambda s, _, u: s.by_time(u[0]),
+    "index": Inference.step_index, "cross": Inference.step_cross, "skew": Inference.step_skew,
+    "inv": Inference.step_inv, "expm": Inference.step_expm, "qmul": Inference.step_qmul,
+    "rot": Inference.step_rot, "diff": Inference.step_diff,
 }  # fmt: skip
+
+
+def transpose(units: Units) -> Units:
+    """Columns as rows."""
+    return [list(column) for column in zip(*units, strict=True)]
+
+
+def diagonal(cells: Sequence[Cell]) -> Units:
+    """A matrix that is zero beside its diagonal."""
+    return [[cell if i == j else None for j in range(len(cells))] for i, cell in enumerate(cells)]
 
 
 def multiply(*cells: Cell) -> Cell:
@@ -452,18 +419,6 @@ def multiply(*cells: Cell) -> Cell:
 def scale(form: Form, exponent: Fraction) -> Form:
     """A power of a unit."""
     return combine([(form, exponent)])  # type: ignore[list-item,return-value]
-
-
-def evaluate(tree: Tree) -> Fraction | None:
-    """A number that is written as products, quotients and sums, as an exponent may be."""
-    if tree.head == NUMBER:
-        return tree.args[0]  # type: ignore[no-any-return]
-    numbers = [evaluate(part) for part in tree.args] if tree.head in (SUM, PRODUCT, POWER) else [None]
-    if any(x is None for x in numbers):
-        return None
-    if tree.head == POWER:
-        return 1 / numbers[0] if numbers[1] == -1 and numbers[0] else None
-    return sum(numbers) if tree.head == SUM else prod(numbers)  # type: ignore[arg-type,return-value]
 
 
 def is_integer(shape: Shape) -> bool:

@@ -57,7 +57,7 @@ from navsym.language.tree import (
 
 __all__ = ["Expr", "Matrix", "Parsed", "Symbol", "parse", "parse_noting", "read_tree", "symbol", "to_text"]
 
-MARKS, SIGNS, OPENERS = frozenset("*/"), frozenset("+-"), frozenset(("**", "(", ".", "["))
+MARKS, SIGNS, OPENERS = frozenset("*/@"), frozenset("+-"), frozenset(("**", "(", ".", "["))
 FOLLOWERS = OPENERS | {"/"}  # a number before one of them may be a part of another one
 ZERO_LEAF, ONE_LEAF = build_number(0), build_number(1)
 LONGEST = 2_000_000  # characters of a text that is read into a tree: nothing is evaluated there
@@ -138,9 +138,8 @@ def read_tree(text: str, names: Collection[str] | None = None, *, where: str = "
 def start_reading(text: str, names: Collection[str] | None, where: str, length: int) -> Reader:
     """A reader at the beginning of a text, which must be one."""
     if not isinstance(text, str):
-        raise ExpressionSyntaxError(
-            f'expected an expression as text; got {quote(text)}; put it in quotes, such as "1/2"', where=where
-        )
+        message = f'expected an expression as text; got {quote(text)}; put it in quotes, such as "1/2"'
+        raise ExpressionSyntaxError(message, where=where)
     for name in RESERVED.intersection(names or ()):
         check_name(name, where=where)
     if not text.strip():
@@ -204,14 +203,18 @@ class Reader:
         return self.make(at, SUM, *terms) if len(terms) > 1 else terms[0]
 
     def product(self, minus: bool) -> Tree:
-        """Factors and inverted divisors; a minus before them is a factor."""
+        """Factors, inverted divisors, and what stands behind @, from left to right; a minus before them is a factor."""
         at, tokens = self.position, self.tokens
         factors = self.signed(minus, head=True)
         while (mark := tokens[self.position]) in MARKS:
             mark_at = self.position
             self.position += 1
             factor = self.unary()
-            factors.append(factor if mark == "*" else self.make(mark_at, POWER, factor, MINUS_ONE))
+            if mark == "@":
+                left = self.make(at, PRODUCT, *factors) if len(factors) != 1 else factors[0]
+                factors = [self.make(mark_at, "@", left, factor)]
+            else:
+                factors.append(factor if mark == "*" else self.make(mark_at, POWER, factor, MINUS_ONE))
             if len(factors) > FACTORS:
                 self.refuse(mark_at, refuse_size(f"at most {FACTORS} factors in a product", "more"))
         return self.make(at, PRODUCT, *factors) if len(factors) != 1 else factors[0]

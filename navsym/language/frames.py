@@ -141,9 +141,7 @@ def infer_frames(
     {'v': 'n', 'C': 'b to n', 'f': 'b'}
     """
     slopes = rates or {}
-    names = dict.fromkeys(name for tree in (*trees, *slopes.values()) for name in list_names(tree)) | dict.fromkeys(
-        slopes
-    )
+    names = dict.fromkeys([*list_names(*trees, *slopes.values()), *slopes])
     used = [shapes[name] for name in names if name in shapes]
     declared = {shape.frame for shape in used if shape.frame}
     several = len(declared) > 1 and all(shape.frame for shape in used if shape.size)

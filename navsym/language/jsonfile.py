@@ -52,9 +52,8 @@ def require_unique_keys(pairs: list[tuple[str, Any]], where: str) -> dict[str, A
     if len(table) < len(pairs):
         seen: set[str] = set()
         twice = next(key for key, _ in pairs if key in seen or seen.add(key))  # type: ignore[func-returns-value]
-        raise DuplicateError(
-            f"expected every key once; got {quote(twice)} again; remove one of them", where=join_places(where, (twice,))
-        )
+        message = f"expected every key once; got {quote(twice)} again; remove one of them"
+        raise DuplicateError(message, where=join_places(where, (twice,)))
     return table
 
 

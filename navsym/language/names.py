@@ -45,21 +45,15 @@ def check_name(name: object, *, where: str = "") -> str:
     Raises ExpressionSyntaxError, TooLargeError, or DuplicateError for ``pi``, ``oo`` and the functions.
     """
     if not isinstance(name, str) or (len(name) <= NAME_LENGTH and not NAME.fullmatch(name)):
-        raise ExpressionSyntaxError(
-            f"expected a name: an ASCII letter, then ASCII letters, digits and underscores; "
-            f"got {quote(name)}; rename it",
-            where=where,
-        )
+        expected = "a name: an ASCII letter, then ASCII letters, digits and underscores"
+        raise ExpressionSyntaxError(f"expected {expected}; got {quote(name)}; rename it", where=where)
     if len(name) > NAME_LENGTH:
-        raise TooLargeError(
-            f"expected a name of at most {NAME_LENGTH} characters; got {len(name)} of them, {quote(name)}; shorten it",
-            where=where,
-        )
+        expected, got = f"a name of at most {NAME_LENGTH} characters", f"{len(name)} of them, {quote(name)}"
+        raise TooLargeError(f"expected {expected}; got {got}; shorten it", where=where)
     if name in RESERVED:
         meaning = {"pi": "the number pi", "oo": "infinity"}.get(name, "a function")
-        raise DuplicateError(
-            f"expected a new name; got {name!r}, which already means {meaning}; rename it", where=where
-        )
+        got = f"{name!r}, which already means {meaning}"
+        raise DuplicateError(f"expected a new name; got {got}; rename it", where=where)
     return name
 
 
@@ -138,10 +132,8 @@ def only_keys(table: Table, known: Collection[str], place: str = "") -> None:
 
 def describe_unknown(key: object, known: Collection[str]) -> str:
     """What to say of a key that a format does not have."""
-    return (
-        f"expected one of the keys {', '.join(known)}; got {quote(key)}; "
-        f"remove or correct it: {suggest_nearest(str(key), known)}"
-    )
+    remedy = f"remove or correct it: {suggest_nearest(str(key), known)}"
+    return f"expected one of the keys {', '.join(known)}; got {quote(key)}; {remedy}"
 
 
 def list_calls(text: str, names: str) -> Iterator[list[str]]:

@@ -89,9 +89,8 @@ def check_module_name(name: str) -> str:
     """The name, when it can be a derivation module; raises ExpressionSyntaxError otherwise."""
     if isinstance(name, str) and NAME.fullmatch(name) and not keyword.iskeyword(name):
         return name
-    raise ExpressionSyntaxError(
-        f"expected a module name of a-z, 0-9 and _ that is no word of Python; got {quote(name)}; rename it"
-    )
+    expected = "a module name of a-z, 0-9 and _ that is no word of Python"
+    raise ExpressionSyntaxError(f"expected {expected}; got {quote(name)}; rename it")
 
 
 def module_source(
@@ -234,9 +233,8 @@ def append_claim(source: str, new: NewClaim) -> str:
     if new.call:
         return append_stated(source, new, names_at_top(tree))
     given = read_declarations(tree, new.positive)
-    sides = [
-        read_claim_side(text, where, given) for text, where in ((new.printed, "--printed"), (new.derived, "--derived"))
-    ]
+    texts = ((new.printed, "--printed"), (new.derived, "--derived"))
+    sides = [read_claim_side(text, where, given) for text, where in texts]
     used = {s.name for side in sides for s in side.free_symbols}
     if idle := sorted(new.positive - used):
         raise UnknownSymbolError(f"expected names of the two sides; got {idle[0]}; leave it out", where="--positive")
@@ -255,12 +253,8 @@ def append_claim(source: str, new: NewClaim) -> str:
 
 def append_stated(source: str, new: NewClaim, known: set[str]) -> str:
     """The source of a module with one more claim in the words of files."""
-    block = STATED.format(
-        arguments=new.arguments,
-        function=name_function(new.number, known),
-        title=write_docstring(new.title),
-        call=write_call(new.call),
-    )
+    function, title = name_function(new.number, known), write_docstring(new.title)
+    block = STATED.format(arguments=new.arguments, function=function, title=title, call=write_call(new.call))
     if "state_formula" not in known:
         first = next(n for n in ast.parse(source).body if isinstance(n, ast.ImportFrom) and n.module == "navsym.claims")
         lines = source.splitlines(keepends=True)
@@ -337,11 +331,9 @@ def read_symbol_call(call: ast.Call) -> dict[str, sp.Symbol]:
     text = call.args[0].value if named and call.args and isinstance(call.args[0], ast.Constant) else ""
     if not isinstance(text, str):
         return {}
-    real, positive, nonnegative, nonzero = (any(key.arg == kind for key in call.keywords) for kind in KINDS)
+    known = {kind: any(key.arg == kind for key in call.keywords) for kind in KINDS}
     names = [name for name in text.replace(",", " ").split() if NAMES_IN.fullmatch(name) and name not in RESERVED]
-    return {
-        name: symbol(name, real=real, positive=positive, nonnegative=nonnegative, nonzero=nonzero) for name in names
-    }
+    return {name: symbol(name, where="", **known) for name in names}
 
 
 def read_equation_numbers(source: str) -> tuple[str, ...]:
@@ -373,10 +365,8 @@ def parse_module(source: str) -> ast.Module:
     except SyntaxError as error:
         raise DomainError(f"expected a derivation module; got a syntax error at line {error.lineno}") from error
     if not {"PAPER", "sp", "claim", "Equation", "Status"} <= names_at_top(tree):
-        raise DomainError(
-            "expected a module made by navsym new-paper, with PAPER, sp, claim, Equation and Status at its top; "
-            "got another; add the imports"
-        )
+        expected = "a module made by navsym new-paper, with PAPER, sp, claim, Equation and Status at its top"
+        raise DomainError(f"expected {expected}; got another; add the imports")
     return tree
 
 

@@ -97,10 +97,8 @@ def read_shape(name: str, value: Any, taken: Collection[str], where: str) -> lis
     if isinstance(value, str):
         value = {"sign": value}
     if not isinstance(value, Mapping):
-        message = (
-            f"expected a word, a range or a table; got {describe_value(value)}; write {{ vector = 3 }}, for example"
-        )
-        raise ShapeError(message, where=where)
+        got, remedy = describe_value(value), "write { vector = 3 }, for example"
+        raise ShapeError(f"expected a word, a range or a table; got {got}; {remedy}", where=where)
     expect_keys(value, KEYS, where)
     kinds = [kind for kind in KINDS if kind in value]
     if len(kinds) > 1:
@@ -124,16 +122,9 @@ def read_shape(name: str, value: Any, taken: Collection[str], where: str) -> lis
         random = read_random(value, len(rows), kind, where)
         return [Shape(name, rows, kind, {}, random=random, unit=unit, frame=frame)]
     limits = read_limits(kind, value, unit, where)
-    shape = Shape(
-        name,
-        rows,
-        "scalar" if kind == "integer" else kind,
-        limit_entries(rows, limits),
-        (*relations_of(kind, value, name, where), *relations_of_properties(name, len(rows), properties)),
-        properties=properties,
-        unit=unit,
-        frame=frame,
-    )
+    relations = (*relations_of(kind, value, name, where), *relations_of_properties(name, len(rows), properties))
+    kind, ranges = "scalar" if kind == "integer" else kind, limit_entries(rows, limits)
+    shape = Shape(name, rows, kind, ranges, relations, properties=properties, unit=unit, frame=frame)
     if "function" not in value:
         return [shape]
     if value["function"] != "t":
@@ -216,15 +207,10 @@ def name_entries(name: str, size: Any, symmetric: bool, taken: Collection[str]) 
         return ((name,),)
     mark = "_"
     while True:
-        rows = tuple(
-            tuple(
-                f"{name}{mark}{i}"
-                if size[1] == 1
-                else f"{name}{mark}{min(i, j) if symmetric else i}_{max(i, j) if symmetric else j}"
-                for j in range(1, size[1] + 1)
-            )
-            for i in range(1, size[0] + 1)
-        )
+        places = [[(i, j) for j in range(1, size[1] + 1)] for i in range(1, size[0] + 1)]
+        places = [[(min(p), max(p)) if symmetric else p for p in row] for row in places]
+        ends = [[f"{i}" if size[1] == 1 else f"{i}_{j}" for i, j in row] for row in places]
+        rows = tuple(tuple(f"{name}{mark}{end}" for end in row) for row in ends)
         if not {entry for row in rows for entry in row} & {*taken}:
             return rows
         mark += "_"

@@ -32,10 +32,7 @@ def fit_struct(document: Any, struct: type[T]) -> T:
             known = ", ".join(field.name for field in msgspec.structs.fields(struct))  # type: ignore[arg-type]
             message = f"expected the keys and words of this document; got {said.replace('`', '')}; keys are {known}"
             raise DomainError(f"{path}: {message}" if path else message) from None
-        got = (
-            shorten_repr(document[path], 60)
-            if isinstance(document, dict) and path in document
-            else wanted["got"] or "another"
-        )
+        is_there = isinstance(document, dict) and path in document
+        got = shorten_repr(document[path], 60) if is_there else wanted["got"] or "another"
         message = f"expected {wanted['wanted']}; got {got}; correct it".replace("`", "")
         raise DomainError(f"{path}: {message}" if path else message) from None

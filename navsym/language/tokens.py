@@ -95,20 +95,15 @@ def tokenize(source: Source, length: int = LENGTH) -> Iterator[Token]:
     while kind != "end":
         match = (WIDE_TOKEN if source.wide else TOKEN).match(source.text, at)
         if match is None:
-            refuse_character(source, at + len(source.text[at:]) - len(source.text[at:].lstrip(" \t\r\n")))
+            at += len(source.text[at:]) - len(source.text[at:].lstrip(" \t\r\n"))
+            expected, got = "ASCII letters, digits and + - * / ** ( ) ,", describe_character(source.text[at])
+            source.fail(at, expected, got, advise_on_character(source.text, at))
         kind = str(match.lastgroup)
         token = Token(kind, match[kind], match.start(kind))
         at = match.end()
         if kind == "number":
             refuse_tail(source, token, at)
         yield token
-
-
-def refuse_character(source: Source, at: int) -> NoReturn:
-    """Refuse a character that the language does not have, with a hint when there is one."""
-    char = source.text[at]
-    expected = "ASCII letters, digits and + - * / ** ( ) ,"
-    source.fail(at, expected, describe_character(char), advise_on_character(source.text, at))
 
 
 def refuse_tail(source: Source, token: Token, at: int) -> None:

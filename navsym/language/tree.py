@@ -55,7 +55,10 @@ class Tree:
         return self
 
     def __reduce__(self) -> tuple[Callable[..., Tree], tuple[Any, ...]]:
-        return rebuild, (list_steps(self),)
+        parts = list_parts(self)
+        place = {part: at for at, part in enumerate(parts)}
+        steps = [(p.head, tuple(place[i] for i in parts_of(p)) if parts_of(p) else p.args) for p in parts]
+        return rebuild, (steps,)
 
     def __repr__(self) -> str:
         from navsym.language.printer import print_tree
@@ -212,18 +215,8 @@ def list_names(*trees: Tree) -> list[str]:
     return [part.args[0] for part in list_parts(*trees) if part.head == SYMBOL]
 
 
-# -- pickles ------------------------------------------------------------------------------
-
-
-def list_steps(tree: Tree) -> list[tuple[str, tuple[Any, ...]]]:
-    """The tree as a list without nesting: head and arguments of each part, parts by their places in the list."""
-    parts = list_parts(tree)
-    place = {part: at for at, part in enumerate(parts)}
-    return [(p.head, tuple(place[i] for i in parts_of(p)) if parts_of(p) else p.args) for p in parts]
-
-
 def rebuild(steps: Iterable[tuple[str, tuple[Any, ...]]]) -> Tree:
-    """The tree of such a list."""
+    """The tree of a pickle: head and arguments of each part, which stand for parts by their places in the list."""
     parts: list[Tree] = []
     for head, args in steps:
         leaf = build_number(*args) if head == NUMBER else build(head, args) if head == SYMBOL else None

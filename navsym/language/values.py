@@ -115,9 +115,8 @@ def write_declaration(value: Any, where: str, unit: str = "") -> Any:
     if isinstance(value, (str, Mapping)):
         return value
     expected = f'a range such as ("1/2", "2") or one of {", ".join(SIGNS)}'
-    raise ExpressionSyntaxError(
-        f"expected {expected}; got {quote(value)}; declare it in one of these ways", where=where
-    )
+    message = f"expected {expected}; got {quote(value)}; declare it in one of these ways"
+    raise ExpressionSyntaxError(message, where=where)
 
 
 def declared_unit(name: str, declared: Any) -> str:
@@ -161,10 +160,8 @@ def declaration_word(symbol: sp.Symbol, where: str) -> Any:
         if symbol == sp.Symbol(symbol.name, integer=True, **assumptions):
             return {"integer": [low, "oo"]}
     assumed = ", ".join(name for name, value in sorted(symbol._assumptions_orig.items()) if value)
-    words = " or ".join(SIGNS)
-    message = (
-        f"expected symbols that sympy takes to be {words}; got {symbol} ({assumed}); declare it in one of these ways"
-    )
+    expected = f"symbols that sympy takes to be {' or '.join(SIGNS)}"
+    message = f"expected {expected}; got {symbol} ({assumed}); declare it in one of these ways"
     raise DomainError(message, where=where)
 
 

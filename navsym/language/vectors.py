@@ -14,7 +14,6 @@ from dataclasses import dataclass, field
 from typing import Any, NoReturn
 
 from navsym.core.errors import EmptyError, ExpressionSyntaxError, NavsymError, ShapeError, TooLargeError
-from navsym.language.arithmetic import FACTORS, refuse_size
 from navsym.language.expression import LENGTH, Reader
 from navsym.language.names import FUNCTIONS, RESERVED, quote
 from navsym.language.printer import LOOSE, RAISED, TIGHT, WHOLE, LatexWriter, Text
@@ -183,23 +182,6 @@ class ValueReader(Reader):
         self.fail(at, expected, " and ".join(map(describe_size, sizes)), remedy, ShapeError)
 
     # -- grammar ----------------------------------------------------------------------
-
-    def product(self, minus: bool) -> Tree:
-        """Factors, inverted divisors, and what stands behind @; all of them bind from left to right."""
-        at, tokens = self.position, self.tokens
-        factors = self.signed(minus, head=True)
-        while (mark := tokens[self.position]) in ("*", "/", "@"):
-            mark_at = self.position
-            self.position += 1
-            factor = self.unary()
-            if mark == "@":
-                left = self.make(at, PRODUCT, *factors) if len(factors) != 1 else factors[0]
-                factors = [self.make(mark_at, "@", left, factor)]
-            else:
-                factors.append(factor if mark == "*" else self.make(mark_at, POWER, factor, MINUS_ONE))
-            if len(factors) > FACTORS:
-                self.refuse(mark_at, refuse_size(f"at most {FACTORS} factors in a product", "more"))
-        return self.make(at, PRODUCT, *factors) if len(factors) != 1 else factors[0]
 
     def atom(self) -> Tree:
         """A number, a name, a call, brackets or parentheses, with .T and indices behind it."""
@@ -484,6 +466,17 @@ FORMS = {
     "qmul": r"{0} \otimes {1}",
     "dot_": r"\frac{{d}}{{dt}} {0}",
     "floor": r"\left\lfloor {0} \right\rfloor",
+    "eye": r"\mathbf{{I}}_{{{0}}}",
+    "zeros": r"\mathbf{{0}}_{{{0} \times {1}}}",
+    "where": r"\begin{{cases}}{1} & {0} \\ {2} & \text{{otherwise}}\end{{cases}}",
+}
+#: Forms that enclose their parts by signs of their own.
+CLOSED = ("norm", "skew", "floor", "eye", "zeros", "where")
+BOUND = {
+    "integral": r"\int_{{{2}}}^{{{3}}} {0} \, d{1}",
+    "sum": r"\sum_{{{1} = {2}}}^{{{3}}} {0}",
+    "product": r"\prod_{{{1} = {2}}}^{{{3}}} {0}",
+    "limit": r"\lim_{{{1} \to {2}}} {0}",
 }
 
 
@@ -513,35 +506,16 @@ class ValueWriter(LatexWriter):
             sign = {"!=": r"\ne", "<=": r"\le", ">=": r"\ge"}.get(part.head, part.head)
             return Text(f"{texts[0]} {sign} {texts[1]}", LOOSE)
         if part.head in FORMS:
-            closed = part.head in ("norm", "skew", "floor")
+            closed = part.head in CLOSED
             written = FORMS[part.head].format(*(self.enclose(text, LOOSE if closed else RAISED) for text in inner))
             return Text(written, WHOLE if closed else TIGHT)
-        if part.head == "eye":
-            return Text(rf"\mathbf{{I}}_{{{texts[0]}}}", WHOLE)
-        if part.head == "zeros":
-            return Text(rf"\mathbf{{0}}_{{{texts[0]} \times {texts[1]}}}", WHOLE)
-        if part.head in BINDERS:
-            return self.spell_bound(part.head, texts, self.enclose(inner[0], TIGHT))
-        if part.head == "where":
-            return Text(
-                rf"\begin{{cases}}{texts[1]} & {texts[0]} \\ {texts[2]} & \text{{otherwise}}\end{{cases}}", WHOLE
-            )
+        if part.head in BOUND:
+            return Text(BOUND[part.head].format(self.enclose(inner[0], TIGHT), *texts[1:]), LOOSE)
         if part.head == "diff":
             order = "" if len(texts) < 3 else f"^{{{texts[2]}}}"
-            return Text(
-                rf"\frac{{\partial{order}}}{{\partial {texts[1]}{order}}} {self.enclose(inner[0], RAISED)}", TIGHT
-            )
+            operator = rf"\frac{{\partial{order}}}{{\partial {texts[1]}{order}}}"
+            return Text(f"{operator} {self.enclose(inner[0], RAISED)}", TIGHT)
         return super().spell(part, inner)
-
-    @staticmethod
-    def spell_bound(head: str, texts: list[str], inside: str) -> Text:
-        """A function with a variable of its own."""
-        variable, low, high = texts[1], texts[2], texts[-1]
-        if head == "integral":
-            return Text(rf"\int_{{{low}}}^{{{high}}} {inside} \, d{variable}", LOOSE)
-        if head == "limit":
-            return Text(rf"\lim_{{{variable} \to {low}}} {inside}", LOOSE)
-        return Text(rf"\{'sum' if head == 'sum' else 'prod'}_{{{variable} = {low}}}^{{{high}}} {inside}", LOOSE)
 
 
 def print_value_latex(tree: Tree) -> str:

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any
 from navsym.audit.answer import read_sources
 from navsym.audit.decide import differentiate
 from navsym.audit.questions import Question, list_askings
-from navsym.audit.values import Array, Unread, Value, multiply, raise_to, total
+from navsym.audit.values import Unread, Value, multiply, raise_to, total
 from navsym.conventions.answer import Conflict, Conventions, find_conventions
 from navsym.conventions.generating import fill_model, require_known
 from navsym.conventions.reading import read_cell, read_problem
@@ -254,13 +254,12 @@ def settle_cases(question: Question) -> Value:
 
 def list_rows(value: Value, where: str) -> list[list[Any]]:
     """A value row by row, as one column where it is a vector; raises DomainError for what is not read."""
-    cells = value.cells if isinstance(value, Array) else (value,)
-    for cell in cells:
+    for cell in value.cells:
         if isinstance(cell, Unread):
             message = f"expected a formula; got a value that is not read: {cell.why} (line {cell.line}); "
             raise DomainError(f"{message}write it within the language of audit", where=where)
-    width = value.shape[1] if isinstance(value, Array) and len(value.shape) == 2 else 1
-    return [list(cells[k : k + width]) for k in range(0, len(cells), width)]
+    width = value.shape[1] if len(value.shape) == 2 else 1
+    return [list(value.cells[k : k + width]) for k in range(0, len(value.cells), width)]
 
 
 def slope_of(tree: Tree, step: Tree, diagonal: bool, where: str) -> Tree:

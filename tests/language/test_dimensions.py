@@ -81,7 +81,7 @@ METRE, SECOND, SPEED = {"unit": "m"}, {"unit": "s"}, {"unit": "m/s"}
     [
         "h + T = h", "h = v", "sin(h) = 1", "exp(-T) = 1", "h**T = 1", "h + 1 = h", "atan2(h, T) = 0", "h*T = h*v",
         "max(h, v) = h", "where(h < T, h, h) = h", "sqrt(h) = h", "diff(h*T, T) = h*T", "integral(v, T, 0, h) = h",
-        "norm([h, v, 1]) = 0", "floor(h) = 1",
+        "norm([h, v, 1]) = 0", "floor(h) = 1", "h**(2**2) = h",
         "erf(h/T) = 0", "expm([[1, h], [h, 1]]) = zeros(2, 2)", "cov(h, T) = h**2", "det([[h, v], [v, h]]) = 0",
         "[h, v] = [v, h]", "dot([h, h], [v, T]) = 0", "h*h = h", "h*v*h = h*v",
     ],

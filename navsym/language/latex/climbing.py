@@ -136,10 +136,10 @@ class Climber(ClusterReader):
             double = (one.sub and scripts[0]) or (one.sup and scripts[1])
             if one.after == stop and double:
                 return
-            bracketed = inner[0].text in CLOSING and self.closing(self.place + 1) == stop - 1
-            bold = self.tokens[self.place].bold and not any(
-                t.text in CLOSING or t.text in CLOSING.values() for t in inner
-            )
+            closing = CLOSING.get(inner[0].text, "")
+            bracketed = bool(closing) and match_brace(self.tokens, self.place + 1, inner[0].text, closing) == stop - 1
+            has_brackets = any(t.text in CLOSING or t.text in CLOSING.values() for t in inner)
+            bold = self.tokens[self.place].bold and not has_brackets
             if one.after != stop and not bracketed and not bold:
                 self.refuse("a script on one symbol")
             del self.tokens[stop], self.tokens[self.place]
@@ -192,7 +192,6 @@ class Climber(ClusterReader):
         found = self.meaning(self.place)
         if found is None:
             self.refuse("a declared name")
-            raise AssertionError
         self.place = here.after
         return self.raised(found, here.sup)
 
@@ -268,16 +267,6 @@ class Climber(ClusterReader):
             raise Refusal(sup[0].at, "a power", "an index", "use [latex]")
         return self.part_of(sup)
 
-    def closing(self, place: int) -> int:
-        """Place of the bracket that closes the one here; -1 where there is none."""
-        opening, depth = self.tokens[place].text, 0
-        for at in range(place, len(self.tokens)):
-            text = self.tokens[at].text
-            depth += (text == opening) - (text == CLOSING[opening])
-            if depth == 0 and at > place:
-                return at
-        return -1
-
     def enclosed(self) -> Part:
         """Brackets and bars."""
         opening, at = self.look(), self.tokens[self.place].at
@@ -289,10 +278,7 @@ class Climber(ClusterReader):
         if opening == "{<" and [t.text for t in self.tokens[self.place : self.place + 7]] == [r"\begin", "{", *"array"]:
             return self.braced_cases(at)
         self.stops = [opening] if opening in ("|", "||") else []
-        items = [self.climb(0)]
-        while opening in ("(", "[", "angle<") and self.look() == ",":
-            self.place += 1
-            items.append(self.climb(0))
+        items = self.climb_items() if opening in ("(", "[", "angle<") else [self.climb(0)]
         self.stops, inner = outer, items[0]
         crossed = self.look() == r"\times"
         self.place += crossed
@@ -371,12 +357,8 @@ class Climber(ClusterReader):
         sub, sup, self.place = self.cluster_scripts(self.place)
         if sub:
             size = "".join(t.text for t in sub).split(r"\times")
-            if (
-                text != "0"
-                or not first.bold
-                or len(size) != 2
-                or not all(re.fullmatch("[1-9][0-9]?|[a-z]", s) for s in size)
-            ):
+            is_sized = len(size) == 2 and all(re.fullmatch("[1-9][0-9]?|[a-z]", s) for s in size)
+            if text != "0" or not first.bold or not is_sized:
                 self.refuse("a number without subscript", first.at)
             return self.raised(Part("zeros", tuple(size), first.at), sup)
         if [t.text for t in sup or ()] == [r"\circ"]:
@@ -399,8 +381,9 @@ class Climber(ClusterReader):
             number = self.numeral()
             self.open_braces()
             following = self.look() if number.head != "frac" else ""  # degrees end the argument
-            named = following[:1].isalpha() or following[1:] in GREEK or following == r"\pi"
-            if self.is_end() or following in MARKS or not (named or self.has_arguments(following)):
+            named = following[:1].isalpha() or following in (*FRACTIONS, r"\sqrt", r"\pi")
+            named |= following[:1] == "\\" and following[1:] in (*GREEK, *ACCENTS, *DOTS)
+            if self.is_end() or following in MARKS or not named:
                 return Part("call", (name, power, False, number), at)
             product = Part("*", (number, "", self.operand()), number.at)
             return Part("call", (name, power, False, product), at)
@@ -408,22 +391,24 @@ class Climber(ClusterReader):
             self.refuse(f"the argument of {name}")
         return Part("call", (name, power, False, self.operand()), at)
 
-    def has_arguments(self, text: str) -> bool:
-        return text in FRACTIONS or text == r"\sqrt" or (text[:1] == "\\" and (text[1:] in ACCENTS or text[1:] in DOTS))
-
     def listed(self) -> list[Part]:
         """Arguments in parentheses, commas between them."""
         closing, outer = CLOSING[self.look()], self.stops
         self.place += 1
         self.stops = []
-        found = [self.climb(0)]
-        while self.look() == ",":
-            self.place += 1
-            found.append(self.climb(0))
+        found = self.climb_items()
         self.stops = outer
         if self.look() != closing or self.look(1) in ("_", "^"):
             self.refuse(closing)
         self.place += 1
+        return found
+
+    def climb_items(self) -> list[Part]:
+        """Expressions with commas between them."""
+        found = [self.climb(0)]
+        while self.look() == ",":
+            self.place += 1
+            found.append(self.climb(0))
         return found
 
     def dotted(self, here: Cluster, order: int) -> Part:
@@ -533,7 +518,6 @@ class Climber(ClusterReader):
         index = plain_word(sub[0])
         if index is None:
             self.refuse("one letter as the index", at)
-            raise AssertionError
         start, end = self.part_of(sub[2:]), self.part_of(here.sup or [])
         self.place = here.after
         outer, self.bound = self.bound, self.bound.union((index,))
@@ -585,11 +569,7 @@ class Climber(ClusterReader):
         r"""A matrix: its source between ``\begin`` and ``\end``, cut at ``\\`` and ``&``."""
         at = self.tokens[self.place].at
         opening = self.named_environment(self.place)
-        depth, stop = 0, self.place
-        for stop in range(self.place, len(self.tokens)):
-            depth += (self.tokens[stop].text == r"\begin") - (self.tokens[stop].text == r"\end")
-            if depth == 0:
-                break
+        stop = match_brace(self.tokens, self.place, r"\begin", r"\end")
         body = self.tokens[self.place + 3 + len(opening) : stop]
         if opening == "array":
             body = body[match_brace(body, 0) + 1 :]

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from functools import lru_cache
-from typing import Any
+from typing import NoReturn
 
 from navsym.language.latex.notation import ACCENTS, DOTS
 from navsym.language.latex.parts import Refusal
@@ -33,13 +33,12 @@ class ClusterReader:
 
     def look(self, ahead: int = 0) -> str:
         """The text of a token, nothing behind the end."""
-        at = self.place + ahead
-        return self.tokens[at].text if at < len(self.tokens) else ""
+        return self.look_at(self.place + ahead)
 
     def look_at(self, place: int) -> str:
         return self.tokens[place].text if place < len(self.tokens) else ""
 
-    def refuse(self, expected: str, at: int | None = None) -> Any:
+    def refuse(self, expected: str, at: int | None = None) -> NoReturn:
         """Refuse the token at hand."""
         here = self.tokens[self.place].at if self.place < len(self.tokens) else self.end
         raise Refusal(here if at is None else at, expected, self.look()[:40] or "the end", "write it another way")
@@ -170,10 +169,8 @@ def turn_value(wanted: list[Cluster], found: list[Cluster]) -> list[Token] | Non
         return None
     texts = [t.text for t in found[0].sup if t.text not in "{}"]
     mark = texts[-1:] == ["T"] if len(texts) == 1 or texts[:-1] == [r"\mathsf"] else False
-    if not (mark or texts in ([r"\top"], [r"\intercal"])) or (wanted[1].base[0].text, wanted[-1].base[0].text) != (
-        "(",
-        ")",
-    ):
+    ends = [wanted[at].base[0].text for at in (1, -1)]
+    if not (mark or texts in ([r"\top"], [r"\intercal"])) or ends != ["(", ")"]:
         return None
     pairs = zip(wanted, [replace(found[0], sup=None), *found[1:]], strict=True)
     return found[0].sup if all(is_spelled(w, f) for w, f in pairs) else None
@@ -184,9 +181,9 @@ def is_alike(wanted: list[Token] | None, found: list[Token] | None) -> bool:
     if wanted is None or found is None:
         return wanted is found
     left, right = canonical(wanted), canonical(found)
-    return len(left) == len(right) and all(
-        w.text == f.text and w.word == f.word and (f.bold or not w.bold) for w, f in zip(left, right, strict=True)
-    )
+    pairs = zip(left, right, strict=False)
+    is_same = all((w.text, w.word) == (f.text, f.word) and (f.bold or not w.bold) for w, f in pairs)
+    return is_same and len(left) == len(right)
 
 
 def canonical(tokens: list[Token]) -> list[Token]:
@@ -199,10 +196,8 @@ def canonical(tokens: list[Token]) -> list[Token]:
         if text in ("_", "^"):
             sub, sup, place = other.cluster_scripts(place)
             for side, script in (("_", sub), ("^", sup)):
-                inner = canonical(script) if script else []
-                done += (
-                    [Token(side, 0, 0, True), Token("{", 0, 0, True), *inner, Token("}", 0, 0, True)] if inner else []
-                )
+                if inner := canonical(script or []):
+                    done += [Token(side, 0, 0, True), Token("{", 0, 0, True), *inner, Token("}", 0, 0, True)]
             continue
         if text not in "{}":
             done.append(tokens[place])

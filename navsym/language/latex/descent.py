@@ -85,7 +85,6 @@ class Descent(SymbolReader):
         noad = self.noad
         if noad is None:
             self.refuse("a number, a name or a group", "complete the formula")
-            raise AssertionError
         named = self.spelling()
         if named is not None:
             part, last = named
@@ -151,7 +150,9 @@ class Descent(SymbolReader):
             self.bars.append(opening.value)
         kept, self.integrals = self.integrals, 0
         outer, self.bars = self.bars, self.bars if is_bar and opening.kind == "bar" else []
-        has_cases = self.opens_cases(opening)
+        noad = self.noad
+        is_array = noad is not None and noad.kind == "env" and noad.value[0] == "array" and not noad.has_scripts
+        has_cases = opening.value == "{<" and is_array
         items = [self.cases(self.noads[self.place])] if has_cases else [self.expression()]
         while opening.value in ("(", "[", "langle") and self.noad is not None and self.noad.is_sign(","):
             self.place += 1
@@ -165,7 +166,6 @@ class Descent(SymbolReader):
         wanted = "cases" if has_cases else PAIRS[opening.value]
         if closing is None or closing.kind not in ("close", "bar") or closing.value != wanted:
             self.refuse(f"the bracket that closes {self.text[opening.at : opening.end]}", "close it")
-            raise AssertionError
         self.place += 1
         if len(items) > 1 or opening.value == "langle":
             return self.close_list(opening, items, closing, crossed)
@@ -185,9 +185,7 @@ class Descent(SymbolReader):
         """A group by its bracket and by the subscript of the closing one."""
         kind = opening.value
         crossed |= kind == "floor" and closing.sub is None and self.notation.has_skew_floor
-        crossed |= (
-            bool(closing.sub) and len(closing.sub or ()) == 1 and (closing.sub or [closing])[0].is_command("times")
-        )
+        crossed |= closing.sub is not None and len(closing.sub) == 1 and closing.sub[0].is_command("times")
         part = Part("()", (kind, inner), opening.at)
         if crossed and kind in ("[", "(", "floor"):
             part = Part("skew", (inner,), opening.at)
@@ -260,9 +258,8 @@ class Descent(SymbolReader):
         if noad.sub is not None:
             base = "".join(str(n.value) for n in noad.sub)
             if name != "log" or base not in ("2", "10") or power:
-                raise Refusal(
-                    noad.at, "a function without subscript", self.text[noad.at : noad.end], "write it otherwise"
-                )
+                got = self.text[noad.at : noad.end]
+                raise Refusal(noad.at, "a function without subscript", got, "write it otherwise")
             name = f"log_{base}"
         elif noad.is_command("log"):
             name = "log?"
@@ -446,7 +443,6 @@ class Descent(SymbolReader):
         name = self.base(variable) if variable else None
         if variable is None or name is None or variable.sup:
             self.refuse("the variable of the integral", "write one name behind d")
-            raise AssertionError
         by = self.resolve(variable, name) or self.variable(variable, name)
         self.bound = kept
         self.place += 1
@@ -471,12 +467,6 @@ class Descent(SymbolReader):
         cells = [self.inside(cell) for cell in noad.args]
         part = Part("matrix", (len(widths), *cells), noad.at)
         return Part("call", ("det", None, True, part), noad.at) if kind == "vmatrix" else part
-
-    def opens_cases(self, opening: Noad) -> bool:
-        """True for a brace and one array in it."""
-        noad = self.noad
-        is_array = noad is not None and noad.kind == "env" and noad.value[0] == "array" and not noad.has_scripts
-        return opening.value == "{<" and is_array
 
     def cases(self, noad: Noad) -> Part:
         """Values with their conditions, the last one for all the rest."""

@@ -15,9 +15,15 @@ from navsym.language.latex.notation import ACCENTS, BOLD, DOTS, SETTINGS, SIZES,
 from navsym.language.latex.parts import DEPTH, Refusal
 
 MATRICES = ("matrix", "pmatrix", "bmatrix", "Bmatrix", "vmatrix", "smallmatrix", "array", "cases")
-OPENERS = {"lvert": "|", "lVert": "||", "lfloor": "floor", "lbrack": "[", "lparen": "(", "langle": "langle", "{": "{<"}
-CLOSERS = {"rvert": "|", "rVert": "||", "rfloor": "floor", "rbrack": "]", "rparen": ")", "rangle": "langle", "}": ">}"}
 BRACKETS = {"(": ("open", "("), ")": ("close", ")"), "[": ("open", "["), "]": ("close", "]"), "|": ("bar", "|")}
+#: The same of commands.
+DELIMITERS = {
+    "lvert": ("open", "|"), "lVert": ("open", "||"), "lfloor": ("open", "floor"), "lbrack": ("open", "["),
+    "lparen": ("open", "("), "langle": ("open", "langle"), "{": ("open", "{<"), "rvert": ("close", "|"),
+    "rVert": ("close", "||"), "rfloor": ("close", "floor"), "rbrack": ("close", "]"), "rparen": ("close", ")"),
+    "rangle": ("close", "langle"), "}": ("close", ">}"), "|": ("bar", "||"), "Vert": ("bar", "||"),
+    "vert": ("bar", "|"),
+}  # fmt: skip
 
 
 @dataclass(slots=True)
@@ -90,13 +96,10 @@ def load_context() -> Any:
         raise MissingEngineError(message, where="read") from None
     context = LatexContextDb()
     one = (*BOLD, *(WORDS - {"rm"}), *ACCENTS, *DOTS)
-    macros = [MacroSpec(name, "{") for name in one] + [
-        MacroSpec(name, "{{") for name in ("frac", "dfrac", "tfrac", "cfrac")
-    ]
+    given = {**dict.fromkeys(one, "{"), **dict.fromkeys(("frac", "dfrac", "tfrac", "cfrac"), "{{"), "sqrt": "[{"}
+    macros = [MacroSpec(name, arguments) for name, arguments in given.items()]
     arrays = [EnvironmentSpec(name, "{" if name == "array" else "") for name in MATRICES]
-    context.add_context_category(
-        "formulas", macros=[*macros, MacroSpec("sqrt", "[{")], environments=arrays, specials=[]
-    )
+    context.add_context_category("formulas", macros=macros, environments=arrays, specials=[])
     context.set_unknown_macro_spec(MacroSpec(""))
     context.set_unknown_environment_spec(EnvironmentSpec(""))
     return context
@@ -144,6 +147,7 @@ class Builder:
         done: list[Noad] = []
         side = ""
         for place, unit in enumerate(units):
+            is_second = unit.is_bar and any(n.is_bar and n.end == unit.at for n in done[-1:])
             if side:
                 self.attach(done[-1], side, unit, units[place + 1 : place + 2])
                 side = ""
@@ -157,11 +161,7 @@ class Builder:
                 if not primed or not takes_script(done[-1]):
                     raise Refusal(unit.at, "a name before its primes", "'", "write the name in [latex]")
                 done[-1].sup, done[-1].end = [*(done[-1].sup or []), prime], unit.end
-            elif (
-                unit.is_bar
-                and any(n.is_bar and n.end == unit.at for n in done[-1:])
-                and sum(n.is_bar for n in done) % 2
-            ):
+            elif is_second and sum(n.is_bar for n in done) % 2:
                 done[-1].value, done[-1].end = "||", unit.end  # but |a||b| has bars that close and open
             else:
                 done.append(unit)
@@ -237,7 +237,7 @@ class Builder:
         if len(inner) == 1 and any(getattr(noad, side) and getattr(last, side) for side in ("sub", "sup")):
             closing = Noad("close", "}", noad.end, noad.end, sub=noad.sub, sup=noad.sup)
             return [Noad("open", "{", noad.at, noad.at + 1), last, closing]
-        closed = len(inner) > 1 and inner[0].kind == "open" and last.kind == "close" and not closes_early(inner)
+        closed = len(inner) > 1 and inner[0].kind == "open" and match_bracket(inner, 0) == len(inner) - 1
         twice = any(getattr(noad, side) and getattr(last, side) for side in ("sub", "sup"))
         opens = any(n.kind in ("open", "close", "bar") for n in inner)
         if (len(inner) > 1 and not closed and (not noad.bold or opens)) or twice:
@@ -276,13 +276,8 @@ class Builder:
             return [Noad("group", None, at, name_end, bold, ([],))]
         if name in ("left", "right"):
             return [Noad("side", name, at, name_end)]
-        if name in OPENERS or name in CLOSERS:
-            table, kind = (OPENERS, "open") if name in OPENERS else (CLOSERS, "close")
-            return [Noad(kind, table[name], at, name_end)]
-        if name in ("|", "Vert"):
-            return [Noad("bar", "||", at, name_end)]
-        if name == "vert":
-            return [Noad("bar", "|", at, name_end)]
+        if name in DELIMITERS:
+            return [Noad(*DELIMITERS[name], at, name_end)]
         given = [arg for arg in (node.nodeargd.argnlist if node.nodeargd else ()) if arg is not None]
         if name in WORDS and given:
             word = self.text[given[0].pos : given[0].pos + given[0].len].strip("{} ")
@@ -291,16 +286,8 @@ class Builder:
         args = tuple(self.build(nodes, bold or name in BOLD) for nodes in inner)  # in braces, or one symbol
         if name in BOLD:
             return [Noad("group", None, at, end, True, args)]
-        return [
-            Noad(
-                "arg" if args else "cmd",
-                "frac" if name in ("dfrac", "tfrac", "cfrac") else name,
-                at,
-                end if args else name_end,
-                bold,
-                args,
-            )
-        ]
+        name = "frac" if name in ("dfrac", "tfrac", "cfrac") else name
+        return [Noad("arg", name, at, end, bold, args) if args else Noad("cmd", name, at, name_end, bold)]
 
     def make_environment(self, node: Any, at: int, end: int) -> Noad:
         """A matrix: its entries as lists, and the length of each row as its value."""
@@ -366,11 +353,11 @@ def stands_apart(beside: list[Noad], bracket: str, signs: str) -> bool:
     return all(n.kind in (bracket, "bar") or n.is_sign(*signs, *"=<>,;.") for n in beside)
 
 
-def closes_early(noads: list[Noad]) -> bool:
-    """True when the bracket at the beginning closes before the end."""
+def match_bracket(noads: list[Noad], place: int) -> int:
+    """Place of the bracket that closes the one here; -1 where there is none."""
     depth = 0
-    for place, noad in enumerate(noads):
-        depth += (noad.kind == "open") - (noad.kind == "close")
-        if depth == 0 and place + 1 < len(noads):
-            return True
-    return False
+    for at in range(place, len(noads)):
+        depth += (noads[at].kind == "open") - (noads[at].kind == "close")
+        if depth == 0:
+            return at
+    return -1

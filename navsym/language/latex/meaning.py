@@ -6,6 +6,7 @@ The outcome is text of the language of files. Where readers of the printed line 
 from __future__ import annotations
 
 import re
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from itertools import pairwise
 from typing import Any
@@ -20,6 +21,8 @@ SCALAR: Shape = ()
 WAVES = ("sin", "cos", "tan")
 WRITE = "write parentheses"
 CALLING = ("(", "[", "{<")
+#: The methods of heads that are no words.
+METHODS = {"+": "terms", "*": "product", "^": "power", "-": "minus", "norm": "abs"}
 
 
 @dataclass(frozen=True, slots=True)
@@ -98,9 +101,8 @@ def fit_sides(left: Term, right: Term, at: int) -> tuple[Term, Term]:
             if one.text == "0" and other.shape:
                 zero = Term(f"zeros({', '.join(other.shape)})", WHOLE, other.shape)
                 return (zero, other) if one is left else (other, zero)
-        raise Refusal(
-            at, "two sides of one shape", f"{say(left.shape)} and {say(right.shape)}", "correct a declaration"
-        )
+        got = f"{say(left.shape)} and {say(right.shape)}"
+        raise Refusal(at, "two sides of one shape", got, "correct a declaration")
     return left, right
 
 
@@ -129,16 +131,6 @@ class Explainer:
 
     def __init__(self, notation: Notation) -> None:
         self.notation = notation
-        self.methods = {
-            "+": self.explain_sum, "*": self.explain_product, "^": self.explain_power,
-            "frac": self.explain_fraction, "-": self.explain_minus, "sqrt": self.explain_root,
-            "abs": self.explain_length, "norm": self.explain_length, "floor": self.explain_floor,
-            "call": self.explain_call, "matrix": self.explain_matrix, "skew": self.explain_skew,
-            "dot": self.explain_dot, "diff": self.explain_derivative, "integral": self.explain_integral,
-            "sum": self.explain_series, "num": self.explain_number, "name": self.explain_name,
-            "limit": self.explain_limit, "inner": self.explain_inner, "cases": self.explain_cases,
-            "list": self.explain_list, "()": lambda part: self.explain(part.args[1]),
-        }  # fmt: skip
 
     def explain(self, part: Part) -> Term:
         """Text and shape of a part."""
@@ -149,10 +141,12 @@ class Explainer:
         if part.head == "zeros":
             return Term(f"zeros({', '.join(part.args)})", shape=part.args)
         if part.head == "order":
-            raise Refusal(
-                part.at, "O(x^k) as the last term of the right side", "it elsewhere", "move it, or leave it out"
-            )
-        return self.methods[part.head](part)
+            expected = "O(x^k) as the last term of the right side"
+            raise Refusal(part.at, expected, "it elsewhere", "move it, or leave it out")
+        if part.head == "()":
+            return self.explain(part.args[1])
+        method: Callable[[Part], Term] = getattr(self, f"explain_{METHODS.get(part.head, part.head)}")
+        return method(part)
 
     def scalar(self, part: Part, what: str) -> Term:
         """A part that has to be a scalar."""
@@ -161,7 +155,7 @@ class Explainer:
             raise Refusal(part.at, f"a scalar {what}", say(term.shape), "correct the formula or a declaration")
         return term
 
-    def explain_number(self, part: Part) -> Term:
+    def explain_num(self, part: Part) -> Term:
         (text,) = part.args
         return Term(f"0{text}" if text[0] == "." else text)
 
@@ -174,7 +168,7 @@ class Explainer:
         term = self.explain(part.args[0])
         return Term(f"-{term.inside(PRODUCT)}", SUM, term.shape, "", term.is_quaternion)
 
-    def explain_sum(self, part: Part) -> Term:
+    def explain_terms(self, part: Part) -> Term:
         """A sum of terms of one shape."""
         terms = [self.explain(term.args[0] if term.head == "-" else term) for term in part.args]
         shape = next((term.shape for term in terms if "?" not in term.shape), terms[0].shape)
@@ -301,9 +295,8 @@ class Explainer:
             if not base.shape and kind == "T" and "T" in self.notation and not self.notation.shapes["T"]:
                 return Term(f"{base.inside(WHOLE)}**T", POWER)
             if not base.shape:
-                raise Refusal(
-                    mark.at, "a vector or matrix before a transpose", "a scalar", "declare it, or name the power"
-                )
+                expected = "a vector or matrix before a transpose"
+                raise Refusal(mark.at, expected, "a scalar", "declare it, or name the power")
             if kind[0] == "-":
                 if base.shape[0] != base.shape[1]:
                     raise Refusal(mark.at, "a square matrix", say(base.shape), "correct a declaration")
@@ -314,15 +307,14 @@ class Explainer:
             return Term(f"conj({base.text})", WHOLE, base.shape, "", True, base.is_unit)
         if kind == "skew" and is_space_vector(base.shape):
             return Term(f"skew({base.text})", WHOLE, ("3", "3"))
-        raise Refusal(
-            mark.at, "a transpose, a conjugate of a quaternion or a power", "another mark", "name it in [latex]"
-        )
+        expected = "a transpose, a conjugate of a quaternion or a power"
+        raise Refusal(mark.at, expected, "another mark", "name it in [latex]")
 
-    def explain_fraction(self, part: Part) -> Term:
+    def explain_frac(self, part: Part) -> Term:
         above, below = self.explain(part.args[0]), self.scalar(part.args[1], "as denominator")
         return Term(f"{above.inside(PRODUCT)}/{below.inside(POWER)}", PRODUCT, above.shape, "", above.is_quaternion)
 
-    def explain_root(self, part: Part) -> Term:
+    def explain_sqrt(self, part: Part) -> Term:
         inner = self.scalar(part.args[0], "under the root")
         if len(part.args) == 1:
             return Term(f"sqrt({inner.text})")
@@ -347,9 +339,8 @@ class Explainer:
         for value, condition in reversed(list(zip(rows[::2], rows[1::2], strict=True))):
             term = self.explain(value)
             if not may_be_same(term.shape, whole.shape):
-                raise Refusal(
-                    value.at, "values of one shape", f"{say(term.shape)} and {say(whole.shape)}", "correct one"
-                )
+                got = f"{say(term.shape)} and {say(whole.shape)}"
+                raise Refusal(value.at, "values of one shape", got, "correct one")
             sides = [self.scalar(side, "in a condition").text for side in condition.args[::2]]
             for place in reversed(range(len(sides) - 1)):
                 compared = f"{sides[place]} {condition.args[2 * place + 1]} {sides[place + 1]}"
@@ -357,7 +348,7 @@ class Explainer:
             whole = term
         return whole
 
-    def explain_length(self, part: Part) -> Term:
+    def explain_abs(self, part: Part) -> Term:
         inner = self.explain(part.args[0])
         if not inner.shape and part.head == "abs":
             return Term(f"abs({inner.text})")
@@ -406,12 +397,8 @@ class Explainer:
             return Term(f"rot({text})", WHOLE, ("3", "3"))
         if name == "E" and len(shapes) == 1:
             return Term(f"E({text})", WHOLE, shapes[0])
-        if (
-            name == "cov"
-            and len({shape[1:] for shape in shapes}) == 1
-            and shapes[0][1:] in ((), ("1",))
-            and len(shapes) < 3
-        ):
+        is_pair = len(shapes) < 3 and {shape[1:] for shape in shapes} in ({()}, {("1",)})
+        if name == "cov" and is_pair:
             return Term(f"cov({text})", WHOLE, (*shapes[0][:1], *shapes[-1][:1]))
         if name == "diag" and not any(shapes):
             return Term(f"diag({text})", WHOLE, (str(len(shapes)),) * 2)
@@ -442,7 +429,7 @@ class Explainer:
         inner, order = self.explain(part.args[0]), part.args[1]
         return Term("dot_(" * order + inner.text + ")" * order, WHOLE, inner.shape, "", inner.is_quaternion)
 
-    def explain_derivative(self, part: Part) -> Term:
+    def explain_diff(self, part: Part) -> Term:
         body, variable, order, letter, _ = part.args
         if body.head in ("+", "*"):
             raise Refusal(body.at, "one factor under the derivative", "more", WRITE)
@@ -480,7 +467,7 @@ class Explainer:
         ends = [self.scalar(piece, "as end of the integral").text for piece in (start, end)]
         return Term(f"integral({inner.text}, {by.text}, {ends[0]}, {ends[1]})", WHOLE, inner.shape)
 
-    def explain_series(self, part: Part) -> Term:
+    def explain_sum(self, part: Part) -> Term:
         name, body, index, start, end = part.args
         if self.notation.shapes.get(index):
             raise Refusal(part.at, "a scalar as the index", f"the vector or matrix {index}", "rename it")

@@ -10,7 +10,7 @@ from typing import Any
 
 from navsym.core.errors import DuplicateError, ExpressionSyntaxError, ShapeError
 from navsym.language.files import name_file
-from navsym.language.names import FUNCTIONS, check_name, describe_unknown, join_place, quote
+from navsym.language.names import FUNCTIONS, check_name, expect_keys, join_place, quote
 from navsym.language.shapes import PROPERTIES
 from navsym.language.tomlfile import read_toml
 
@@ -94,10 +94,7 @@ def read_notation(path: str | os.PathLike[str]) -> Notation:
     Raises NavsymError for a file that is none, ExpressionSyntaxError, ShapeError or DuplicateError for a wrong entry.
     """
     where, document = name_file(path), read_toml(path)
-    for key in document:
-        if key not in ("symbols", "latex", "rates", "claim"):
-            message = describe_unknown(key, ("symbols", "latex", "rates"))
-            raise ExpressionSyntaxError(message, where=join_place(where, key))
+    expect_keys({key: table for key, table in document.items() if key != "claim"}, ("symbols", "latex", "rates"), where)
     return build_notation(document.get("symbols", {}), document.get("latex", {}), document.get("rates", {}), where)
 
 
@@ -143,10 +140,7 @@ def read_shape(declaration: Any, where: str) -> Shape:
     if not isinstance(declaration, Mapping):
         require_scalar(declaration, where)
         return ()
-    for key in declaration:
-        if key not in (*DECLARATIONS, *COMPANIONS):
-            message = describe_unknown(key, (*DECLARATIONS, *COMPANIONS))
-            raise ExpressionSyntaxError(message, where=join_place(where, key))
+    expect_keys(declaration, (*DECLARATIONS, *COMPANIONS), where)
     if "quaternion" in declaration:
         return ("4", "1")
     if "rotation" in declaration:

@@ -2,7 +2,7 @@ r"""Formulas of a document or of a string of LaTeX, read with declared symbols o
 
 from __future__ import annotations
 
-import html
+import contextlib
 import os
 import re
 from collections.abc import Iterator, Mapping
@@ -10,8 +10,9 @@ from dataclasses import dataclass, replace
 from pathlib import PurePath
 from typing import Any
 
-from navsym.core.answers import Answer
+from navsym.core.answers import Answer, named
 from navsym.core.errors import EmptyError, ExpressionSyntaxError, TooLargeError
+from navsym.core.tables import Table
 from navsym.language.files import name_file, read_text
 from navsym.language.latex.climbing import climb
 from navsym.language.latex.descent import descend
@@ -83,15 +84,9 @@ class ReadFormula:
 
     def document(self) -> dict[str, Any]:
         """The formula as plain data."""
-        place = {"file": self.file, "line": self.line, "column": self.column}
-        keys = ("source", "status", "why", "left", "relation", "right")
-        return {
-            "place": place,
-            **{k: getattr(self, k) for k in keys},
-            **({} if self.order is None else {"order": dict([self.order])}),
-            "symbols": list(self.symbols),
-            "latex": self.latex,
-        }
+        known = {"place": named(self, "file line column"), **named(self, "source status why left relation right")}
+        known |= {} if self.order is None else {"order": dict([self.order])}
+        return {**known, "symbols": list(self.symbols), "latex": self.latex}
 
 
 @dataclass(frozen=True, slots=True, eq=False, repr=False)
@@ -129,12 +124,9 @@ class Reading(Answer):
     def __repr__(self) -> str:
         return f"<{len(self.read)} of {len(self.formulas)} formulas read>"
 
-    def _repr_html_(self) -> str:
-        rows = "".join(
-            f"<tr><td>{f.line}</td><td>{f.status}</td><td><code>{html.escape(f.text or f.why or '')}</code></td></tr>"
-            for f in self.formulas
-        )
-        return f"<table><thead><tr><th>line</th><th></th><th>reading</th></tr></thead><tbody>{rows}</tbody></table>"
+    def table(self) -> Table:
+        """What a notebook shows."""
+        return ("line", "", "reading"), [(f.line, f.status, f.text or f.why or "") for f in self.formulas]
 
     def document(self) -> dict[str, Any]:
         """The answer as plain data: the JSON document of ``navsym read``."""
@@ -342,7 +334,9 @@ def read_block(block: Block, macros: Mapping[str, Macro], notation: Notation, li
     """The relations of one block."""
     try:
         text, places = expand_macros(block.text, macros) if macros else (block.text, list(range(len(block.text))))
-        relations = split_relations(text) if len(text) <= 20_000 else refuse_length(text)
+        if len(text) > 20_000:
+            raise Refusal(0, "a formula of at most 20000 characters", f"{len(text)}", "split it")
+        relations = split_relations(text)
     except Refusal as refusal:
         text, places = block.text, list(range(len(block.text)))
         side = Side(text, 0)
@@ -350,16 +344,8 @@ def read_block(block: Block, macros: Mapping[str, Macro], notation: Notation, li
     for relation in relations:
         if not block.display and relation.trouble is not None and not relation.sign and "=" not in block.text:
             continue
-        yield read_relation(
-            relation, [block.start + place for place in [*places, len(block.text)]], notation, lines, block
-        )
-
-
-def refuse_length(text: str) -> list[Relation]:
-    """A block that is too long for a formula."""
-    side = Side(text[:200], 0)
-    trouble = Refusal(0, "a formula of at most 20000 characters", f"{len(text)}", "split it")
-    return [Relation(side, "", side, 0, trouble)]
+        whole = [block.start + place for place in [*places, len(block.text)]]
+        yield read_relation(relation, whole, notation, lines, block)
 
 
 def read_relation(relation: Relation, places: list[int], notation: Notation, lines: Lines, block: Block) -> ReadFormula:
@@ -442,9 +428,8 @@ def read_sides(
             terms.append(explain(part, notation, as_column))
     first_term, second_term = fit_sides(terms[0], terms[1], relation.right.start)
     if "eye(?)" in first_term.text + second_term.text:
-        raise Refusal(
-            relation.left.start, "a unit matrix whose size is known", "one without", "write its size below it"
-        )
+        expected = "a unit matrix whose size is known"
+        raise Refusal(relation.left.start, expected, "one without", "write its size below it")
     if (first_term.shape or second_term.shape) and relation.sign not in ("=", "!="):
         raise Refusal(relation.right.start, "scalars on both sides of an order", "vectors", "compare entries")
     if order is not None and relation.sign != "=":
@@ -466,15 +451,11 @@ def refuse_units(text: str, notation: Notation) -> None:
         raise Refusal(comma.start(), "a number with a point or without", got, "write it so")
 
 
-class shifted:
+@contextlib.contextmanager
+def shifted(start: int) -> Iterator[None]:
     """Refusals inside get the place of the whole block."""
-
-    def __init__(self, start: int) -> None:
-        self.start = start
-
-    def __enter__(self) -> None:
-        return None
-
-    def __exit__(self, kind: Any, error: BaseException | None, trace: Any) -> None:
-        if isinstance(error, Refusal):
-            error.at += self.start
+    try:
+        yield
+    except Refusal as refusal:
+        refusal.at += start
+        raise

@@ -5,9 +5,9 @@ from __future__ import annotations
 import re
 from copy import copy
 from dataclasses import replace
-from typing import Any, Self
+from typing import Any, ClassVar, NoReturn, Self
 
-from navsym.language.latex.mathlists import Noad, is_same, is_same_list, list_spelling
+from navsym.language.latex.mathlists import Noad, is_same, is_same_list, list_spelling, match_bracket
 from navsym.language.latex.notation import CALLS, GREEK, SENTENCE, Notation
 from navsym.language.latex.parts import Part, Refusal
 
@@ -19,18 +19,19 @@ LEAD = re.compile(r"^(?:\\[,;:! ]|\\q?quad(?![A-Za-z])|~|\s)+")
 class SymbolReader:
     """A list of symbols, and the place in it; the grammar is added by those who inherit."""
 
+    expression: ClassVar[Any]
+    call: ClassVar[Any]
+    exponent: ClassVar[Any]
+
     def __init__(self, text: str, notation: Notation, noads: list[Noad], faces: dict[str, set[bool]]) -> None:
         self.text, self.notation, self.noads, self.faces = text, notation, noads, faces
         self.bound: tuple[str, ...] = ()
         self.place, self.integrals = 0, 0
         self.bars: list[str] = []
         spelled = [(name, list_spelling(latex)) for name, latex in notation.spellings]
-        shapes = {
-            name: sum(n.bold + (n.sub is not None) + (n.sup is not None) for n in found) for name, found in spelled
-        }
-        self.spelled = sorted(
-            spelled, key=lambda pair: (len(pair[1]), shapes[pair[0]]), reverse=True
-        )  # longer ones first
+        marks = [sum(n.bold + (n.sub is not None) + (n.sup is not None) for n in found) for _, found in spelled]
+        ranks = {name: (len(found), count) for (name, found), count in zip(spelled, marks, strict=True)}
+        self.spelled = sorted(spelled, key=lambda pair: ranks[pair[0]], reverse=True)  # longer ones first
 
     def start(self, noads: list[Noad]) -> Self:
         """A reader of a list of its own: the argument of a command."""
@@ -50,7 +51,7 @@ class SymbolReader:
     def noad(self) -> Noad | None:
         return self.noads[self.place] if self.place < len(self.noads) else None
 
-    def refuse(self, expected: str, remedy: str) -> Any:
+    def refuse(self, expected: str, remedy: str) -> NoReturn:
         """Refuse the symbol at hand."""
         noad = self.noad
         at = noad.at if noad else self.noads[-1].end if self.noads else len(self.text)
@@ -67,9 +68,8 @@ class SymbolReader:
                 if not any(w.bold for w in wanted):
                     self.faces.setdefault(name, set()).add(found[0].bold)
                 return Part("name", (name,), found[0].at), turned
-            if len(found) == len(wanted) and all(
-                is_same(w, f, last=w is wanted[-1]) for w, f in zip(wanted, found, strict=True)
-            ):
+            pairs = zip(wanted, found, strict=False)
+            if len(found) == len(wanted) and all(is_same(w, f, last=w is wanted[-1]) for w, f in pairs):
                 if name == "eye":
                     self.place += len(wanted)
                     return Part("eye", ("?",), found[0].at), replace(found[-1], sub=None)
@@ -215,11 +215,8 @@ class SymbolReader:
         """A symbol that nobody declared, with the name that it might have."""
         self.refuse_operator(noad)
         prefix = noad.is_command("Delta", "delta", "nabla") and not noad.has_scripts
-        if (
-            noad.kind in ("sym", "cmd")
-            and self.base(noad) is None
-            and not (prefix and self.place + 1 < len(self.noads))
-        ):
+        is_prefix = prefix and self.place + 1 < len(self.noads)
+        if noad.kind in ("sym", "cmd") and self.base(noad) is None and not is_prefix:
             self.refuse("a symbol of the language", "write it otherwise, or as a name in [latex]")
         if noad.kind == "word" and self.base(noad) is None:
             self.refuse("a formula without words", "write the words outside")
@@ -286,34 +283,16 @@ class SymbolReader:
         """True for a superscript that can only be part of a name."""
         if not sup:
             return False
-        first, last = sup[0], sup[-1]
-        if len(sup) == 1 and (transpose_mark(last) or last.is_sign("*") or last.is_command("ast", "times", "wedge")):
+        first, is_alone = sup[0], len(sup) == 1
+        if is_alone and (transpose_mark(first) or first.is_sign("*") or first.is_command("ast", "times", "wedge")):
             return False
-        listed = any(n.is_sign(",") for n in sup)
-        return (
-            listed or (len(sup) == 1 and not self.is_operand(last)) or first.kind == "open" or first.is_command("prime")
-        )
+        is_begun = first.kind == "open" or first.is_command("prime")
+        return is_begun or any(n.is_sign(",") for n in sup) or (is_alone and not self.is_operand(first))
 
     def is_operand(self, noad: Noad) -> bool:
         """True for what may be a power alone."""
-        return (
-            noad.kind in ("arg", "word", "bar")
-            or noad.is_sign(*"0123456789")
-            or self.base(noad) is not None
-            or (noad.is_command("pi"))
-        )
-
-    def expression(self) -> Part:
-        """Terms with their signs."""
-        raise NotImplementedError
-
-    def call(self, name: str) -> Part:
-        """A function at its argument."""
-        raise NotImplementedError
-
-    def exponent(self, sup: list[Noad]) -> Part:
-        """A superscript."""
-        raise NotImplementedError
+        is_number = noad.is_sign(*"0123456789") or noad.is_command("pi")
+        return is_number or noad.kind in ("arg", "word", "bar") or self.base(noad) is not None
 
 
 def transpose_mark(noad: Noad) -> str:
@@ -331,12 +310,7 @@ def find_closing(noads: list[Noad], place: int) -> int:
     """Place of the parenthesis that closes the plain one here; -1 where there is none."""
     if place >= len(noads) or noads[place].kind != "open" or noads[place].value != "(" or noads[place].has_scripts:
         return -1
-    depth = 0
-    for at in range(place, len(noads)):
-        depth += (noads[at].kind == "open") - (noads[at].kind == "close")
-        if depth == 0:
-            return at
-    return -1
+    return match_bracket(noads, place)
 
 
 def transposed_value(wanted: tuple[Noad, ...], found: list[Noad]) -> Noad | None:

@@ -105,11 +105,11 @@ def embolden(tokens: list[Token]) -> list[Token]:
     return tokens
 
 
-def match_brace(tokens: list[Token], place: int) -> int:
-    """Place of the brace that closes the one here."""
+def match_brace(tokens: list[Token], place: int, opening: str = "{", closing: str = "}") -> int:
+    """Place of the brace, or of another mark, that closes the one here."""
     depth = 0
     for at in range(place, len(tokens)):
-        depth += (tokens[at].text == "{") - (tokens[at].text == "}")
+        depth += (tokens[at].text == opening) - (tokens[at].text == closing)
         if depth == 0:
             return at
     where = tokens[min(place, len(tokens) - 1)].at if tokens else 0
