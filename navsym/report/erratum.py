@@ -13,7 +13,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 from navsym.claims import Paper, Record, equation_of
-from navsym.report.explain import arithmetic, ball_words, ended
+from navsym.report.explain import arithmetic, ended, number_words
 from navsym.report.formula.sides import Formula, as_printed, coordinates, formula, only_truth
 from navsym.report.wording import Wording, Words, pattern_of
 
@@ -192,5 +192,5 @@ def check_of(record: Record) -> Check | None:
     line = next((line for line in arithmetic(record) if line.differs), None)
     if line is None or len(point) > MOST_COORDINATES or (not point and line.entry):
         return None
-    printed, derived = ball_words(line.printed), ball_words(line.derived)
+    printed, derived = number_words(line.printed), number_words(line.derived)
     return Check(coordinates(point), line.entry, printed, derived, whole=not record.derived or is_file(record.paper))
