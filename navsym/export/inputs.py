@@ -56,19 +56,9 @@ def with_layout(made: Input, layout: Layout, real: str = "double") -> Input:
     array = next((a for a, entries in layout.arrays.items() if made.symbol.name in entries), "")
     unit = layout.units.get(made.symbol.name) or layout.units.get(array, "")
     low, high = layout.tests.get(made.symbol.name) or layout.tests.get(array, (made.test_low, made.test_high))
-    low, high = inner(max(low, made.low), 1, real), inner(min(high, made.high), -1, real)
+    low, high = inside(sp.Rational(max(low, made.low)), 1, real), inside(sp.Rational(min(high, made.high)), -1, real)
     around = f"{made.around}, {{0}} whole" if made.symbol.name in layout.whole else made.around
     return replace(made, unit=unit, test_low=low, test_high=high, around=around)
-
-
-def inner(end: float, direction: int, real: str) -> float:
-    """The end itself, or the ``float`` next to it on its inner side (1: above, -1: below)."""
-    if real == "double":
-        return end
-    value = np.float32(end)
-    if direction * (float(value) - end) < 0:
-        value = np.nextafter(value, np.float32(direction * np.inf))
-    return float(value)
 
 
 def arguments_of(inputs: Sequence[Input], layout: Layout) -> tuple[Argument, ...]:

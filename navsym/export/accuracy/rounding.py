@@ -180,6 +180,13 @@ def down(x: arb) -> arb:
     return arb(x.abs_lower())
 
 
+def float_above(x: arb) -> float:
+    """The least double that is certainly not below a ball, or the next one; infinity where the ball is not finite."""
+    top = x.upper()
+    near = float(top) if x.is_finite() else math.inf
+    return near if arb(near) >= top else math.nextafter(near, math.inf)
+
+
 def sane(bound: arb) -> arb:
     """The bound, or infinity when it is not a number."""
     return up(bound) if bound.is_finite() else INFINITE
