@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING
 import navsym as nav
 from navsym.cli._options import called_options
 from navsym.cli._progress import Progress
-from navsym.cli.output import emit, remark, table
+from navsym.cli.output import Told, remark, table
 
 if TYPE_CHECKING:
     from navsym.trajectory.conditioning import Conditions
 
 
-def command(*, n: int, tau: str = "0.2", rho: str = "1/6371000", digits: int = 30, json_: bool = False) -> None:
+def command(*, n: int, tau: str = "0.2", rho: str = "1/6371000", digits: int = 30) -> Told:
     """Certified 2-norm condition numbers of the matrices N_p, N_pN, N_f and N_s, beside double precision.
 
     Example: navsym condition --n 20 --tau 0.2 --rho 1/6371000
@@ -23,7 +23,7 @@ def command(*, n: int, tau: str = "0.2", rho: str = "1/6371000", digits: int = 3
         found = nav.condition(n, tau, rho, digits, progress=bar.step)
     for line in found.warnings:
         remark(f"warning: {line}")
-    emit(found.document(), as_json=json_, text=lambda: as_text(found))
+    return Told(found.document, lambda: as_text(found))
 
 
 def as_text(found: Conditions) -> str:

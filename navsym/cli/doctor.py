@@ -5,20 +5,19 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import navsym as nav
-from navsym.cli.output import emit, table
+from navsym.cli.output import Told, table
 
 if TYPE_CHECKING:
     from navsym.core.machine import Machine
 
 
-def command(*, json_: bool = False) -> int:
+def command() -> Told:
     """Show what this machine has and lacks. Status 3 when something required is missing.
 
     Example: navsym doctor
     """
     machine = nav.doctor()
-    emit(machine.document(), as_json=json_, text=lambda: as_text(machine))
-    return 0 if machine.complete else 3
+    return Told(machine.document, lambda: as_text(machine), 0 if machine.complete else 3)
 
 
 def as_text(machine: Machine) -> str:

@@ -6,20 +6,20 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import navsym as nav
-from navsym.cli.output import emit
+from navsym.cli.output import Told
 
 if TYPE_CHECKING:
     from navsym.claims.workspace import Workspace
 
 
-def command(folder: Path = Path("."), *, examples: bool = False, json_: bool = False) -> None:
+def command(folder: Path = Path("."), *, examples: bool = False) -> Told:
     """Make a workspace. Inside it, or below, every verb knows what navsym.toml lists.
 
     Example: navsym init drive
     """
     workspace = nav.init(folder, examples=examples)
     said = f"{workspace.root}; the documentation says what to try" if examples else ""
-    emit(workspace.document(), as_json=json_, text=lambda: said or as_text(workspace, folder))
+    return Told(workspace.document, lambda: said or as_text(workspace, folder))
 
 
 def as_text(workspace: Workspace, folder: Path) -> str:
