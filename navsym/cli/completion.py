@@ -5,8 +5,9 @@ from __future__ import annotations
 from pathlib import Path
 
 from navsym.cli._completion import PLACES, SHELLS
-from navsym.cli.output import OutputError, Told, write_text
+from navsym.cli.output import Told, write_text
 from navsym.core.choice import one_of
+from navsym.language.files import make_folder
 
 
 def command(shell: str, *, install: bool = False) -> Told:
@@ -20,11 +21,7 @@ def command(shell: str, *, install: bool = False) -> Told:
     if not install:
         return Told({"shell": shell, "script": script}, script)
     path = Path.home() / PLACES[shell]
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        message = f"expected a folder that can be made; got '{error.strerror}'; print the script and place it yourself"
-        raise OutputError(message, where=str(path)) from error
+    make_folder(path.parent, "print the script and place it yourself")
     write_text(path, script)
     hint = "; add  fpath+=~/.zfunc  before compinit in ~/.zshrc" if shell == "zsh" else ""
     return Told({"shell": shell, "path": str(path)}, f"{path}: open a new shell{hint}")
