@@ -72,11 +72,6 @@ class Erratum:
     paper: Paper
     entries: tuple[Entry, ...]
 
-    @property
-    def is_of_file(self) -> bool:
-        """True for a claim file, whose corrections are decided and not derived."""
-        return is_file(self.paper.module)
-
     def of(self, slip: str) -> tuple[Entry, ...]:
         """Slips of the paper itself, of the scan that was read, or "undecidable" between the two."""
         return tuple(entry for entry in self.entries if entry.slip == slip)
