@@ -2,15 +2,10 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import navsym as nav
 from navsym.cli._options import called_options
 from navsym.cli._progress import Progress
 from navsym.cli.output import Told, remark, table
-
-if TYPE_CHECKING:
-    from navsym.trajectory.conditioning import Conditions
 
 
 def command(*, n: int, tau: str = "0.2", rho: str = "1/6371000", digits: int = 30) -> Told:
@@ -23,11 +18,6 @@ def command(*, n: int, tau: str = "0.2", rho: str = "1/6371000", digits: int = 3
         found = nav.condition(n, tau, rho, digits, progress=bar.step)
     for line in found.warnings:
         remark(f"warning: {line}")
-    return Told(found.document, lambda: as_text(found))
-
-
-def as_text(found: Conditions) -> str:
-    """The four enclosures beside double precision."""
     heads, rows = found.table()
     title = f"condition numbers, n = {found.n}, tau = {found.tau} s, rho = {found.rho} 1/m"
-    return f"{title}\n" + table(heads, rows, right=heads[1:])
+    return Told(found.document, lambda: table(heads, rows, title=title, right=heads[1:]))

@@ -2,13 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import navsym as nav
 from navsym.cli.output import Told, table
-
-if TYPE_CHECKING:
-    from navsym.core.machine import Machine
 
 
 def command() -> Told:
@@ -17,11 +12,7 @@ def command() -> Told:
     Example: navsym doctor
     """
     machine = nav.doctor()
-    return Told(machine.document, lambda: as_text(machine), 0 if machine.complete else 3)
-
-
-def as_text(machine: Machine) -> str:
-    """A table and one closing line."""
     size = f", {machine.memory_bytes / 2**30:.1f} GiB of memory" if machine.memory_bytes else ""
     closing = "everything required is there" if machine.complete else "something required is missing"
-    return f"{table(*machine.table())}\n{machine.cores} cores{size}; {closing}\n"
+    text = f"{table(*machine.table())}\n{machine.cores} cores{size}; {closing}"
+    return Told(machine.document, text, 0 if machine.complete else 3)

@@ -2,13 +2,9 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import navsym as nav
+from navsym.claims.display import count_in_words
 from navsym.cli.output import Told, remark, table
-
-if TYPE_CHECKING:
-    from navsym.report.listing import Listing
 
 
 def command(
@@ -27,9 +23,4 @@ def command(
     listing = nav.claims(*(paper or []), status=status or (), slip=slip, words=words or "")
     for name in listing.changed:
         remark(f"the text of {name} has changed since its verdicts were written: navsym verify {name} --write")
-    return Told(listing.document, lambda: as_text(listing))
-
-
-def as_text(listing: Listing) -> str:
-    """A table with the number of claims below it."""
-    return f"{table(*listing.table())}\n{len(listing)} claim{'' if len(listing) == 1 else 's'}"
+    return Told(listing.document, lambda: f"{table(*listing.table())}\n{count_in_words(len(listing), 'claim')}")
