@@ -28,7 +28,7 @@ from navsym.report.formula.latex import sentence_html, sentence_latex
 from navsym.report.formula.sides import Formula, as_printed, coordinates, formula, only_truth
 from navsym.report.names import latex_escape
 from navsym.report.plots import refutation_svg
-from navsym.report.trust import backing_words, trust_of
+from navsym.report.trust import backing_words, count_certificates
 from navsym.report.wording import Words
 from navsym.verification.certificates import list_parts
 from navsym.verification.ledger import Ledger, may_be_the_copy, records_about, sort_records
@@ -153,7 +153,7 @@ def pages(
         yield f"{paper.file}.erratum.html", env.get_template("erratum.html").render(shared, paper=paper)
         yield f"{paper.file}.erratum.tex", env.get_template("erratum.tex").render(paper=paper)
     places = {record.id: f"{paper.file}.html#{anchor_of(record)}" for paper in papers for record in paper.records}
-    yield "trust.html", env.get_template("trust.html").render(shared, trust=trust_of(ledger), places=places)
+    yield "trust.html", env.get_template("trust.html").render(shared, trust=count_certificates(ledger), places=places)
     if book:
         from navsym.report.atlas_page import atlas_pages
         from navsym.report.book_pages import book_pages
