@@ -3,13 +3,9 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import navsym as nav
 from navsym.cli.output import Told
-
-if TYPE_CHECKING:
-    from navsym.claims.workspace import Workspace
 
 
 def command(folder: Path = Path("."), *, examples: bool = False) -> Told:
@@ -18,12 +14,8 @@ def command(folder: Path = Path("."), *, examples: bool = False) -> Told:
     Example: navsym init drive
     """
     workspace = nav.init(folder, examples=examples)
-    said = f"{workspace.root}; the documentation says what to try" if examples else ""
-    return Told(workspace.document, lambda: said or as_text(workspace, folder))
-
-
-def as_text(workspace: Workspace, folder: Path) -> str:
-    """The files, and the next step."""
+    if examples:
+        return Told(workspace.document, f"{workspace.root}; the documentation says what to try")
     files = [name for kind in workspace.patterns for name in workspace.list_files(kind)]
     step = "navsym verify" if folder == Path(".") else f"cd {folder}; navsym verify"
-    return "\n".join(["navsym.toml", *files, f"next: {step}"])
+    return Told(workspace.document, "\n".join(["navsym.toml", *files, f"next: {step}"]))
