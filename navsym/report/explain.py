@@ -13,7 +13,9 @@ import re
 import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass
+from decimal import Decimal
 from fractions import Fraction
+from itertools import takewhile
 from pathlib import Path
 from typing import Any
 
@@ -229,10 +231,14 @@ def ended(sentence: str) -> str:
 
 def number_words(value: Number) -> str:
     """``0.95885…`` for ends that agree so far, ``0.995`` for ends on both sides of it; both ends otherwise."""
-    sign, _, digits = value.words.partition(" ")
-    if sign == "in" or (sign == "≈" and value.digits < SURE):
-        return f"between {value.lower} and {value.upper}"
-    return f"{digits[:14]}…" if sign == "=" and digits.endswith("…") else digits
+    low, high = value.lower, value.upper
+    if low == high:
+        return low.rstrip("0").rstrip(".") if "." in low else low
+    near = format(Decimal(f"{(Decimal(low) + Decimal(high)) / 2:.8g}").normalize(), "f")
+    if value.digits >= SURE and Fraction(near) in value:
+        return near
+    shared = "".join(a for a, _ in takewhile(lambda pair: pair[0] == pair[1], zip(low, high, strict=False)))
+    return f"{shared[:14]}…" if "." in shared and len(shared) > 6 else f"between {low} and {high}"
 
 
 @dataclass(frozen=True, slots=True)
