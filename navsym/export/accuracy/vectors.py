@@ -175,12 +175,11 @@ def switches(function: ExportedFunction, k: int) -> set[float]:
 
 def next_float(function: ExportedFunction):  # type: ignore[no-untyped-def]
     """The function (x, to) -> the number of the function's type next to x towards ``to``."""
-    if function.arithmetic.name == "double":
-        return math.nextafter
+    kind = np.float32 if function.arithmetic.name == "float" else np.float64
 
     def step(x: float, to: float) -> float:
         with np.errstate(over="ignore"):  # behind the largest number comes infinity
-            return float(np.nextafter(np.float32(x), np.float32(to)))
+            return float(np.nextafter(kind(x), kind(to)))
 
     return step
 
