@@ -79,13 +79,14 @@ def phases() -> Figure:
             latex = latex.replace(wide, plain)
         label = f"{len(places)} times: ${latex}$"
         regimes.append({"at": at, "value": value, "label": label, "instants": places})
-    return plots.phase_diagram(
+    made = plots.phase_diagram(
         regimes,
         parameter="length of the interval T",
         unit="Schuler units",
         quantity="guaranteed deviation\nof the drift, σ",
-        logarithmic=True,
     )
+    made.axes[0].set_yscale("log")
+    return made
 
 
 def dual() -> Figure:
@@ -135,7 +136,13 @@ def modes() -> Figure:
     models = study.schuler_bank()
     series = study.simulate(models, 1, 60, seed=9)
     found = run_filter(models, series.measurements[0], "pulsating")
-    return plots.mode_ribbon(np.arange(1, 61), found.probabilities, MODES, truth=series.modes[0])
+    steps = np.arange(1, 61)
+    made = plots.mode_ribbon(steps, found.probabilities, MODES)
+    axes, truth = made.axes[0], [plots.COLOURS[mode] for mode in series.modes[0]]
+    axes.bar(steps, 0.06, width=1, bottom=1.03, color=truth, linewidth=0)  # the true mode as a strip above
+    axes.annotate("truth", (1.01, 1.06), xycoords=("axes fraction", "data"), va="center", fontsize=9)
+    axes.set_ylim(0, 1.1)
+    return made
 
 
 def surface() -> Figure:

@@ -57,7 +57,8 @@ def options(verb: str, source: Path) -> list[str]:
     """Options of a verb: the parameters of its command that are given by keyword only."""
     tree = ast.parse(source.read_bytes())
     command = next(n for n in tree.body if isinstance(n, ast.FunctionDef) and n.name == "command")
-    return [flag for a in command.args.kwonlyargs for flag in words_of(verb, a.arg)["flag"].split("/")] + ["--help"]
+    own = [flag for a in command.args.kwonlyargs for flag in words_of(verb, a.arg)["flag"].split("/")]
+    return [*own, "--json", "--help"]
 
 
 def claims() -> list[str]:

@@ -9,9 +9,12 @@ import tomllib
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager
 from pathlib import Path
-from typing import Annotated, Any, get_type_hints
+from typing import TYPE_CHECKING, Annotated, Any, get_type_hints
 
 from navsym.core.errors import NavsymError
+
+if TYPE_CHECKING:
+    from navsym.cli.output import Told
 
 #: A remedy of the Python call that sets a switch.
 FLAG = re.compile(r"\b([a-z_]+)=True\b")
@@ -30,12 +33,19 @@ def words_of(verb: str, parameter: str) -> dict[str, Any]:
     return {"flag": f"--{name.replace('_', '-')}"} | ({"help": words} if isinstance(words, str) else words)
 
 
-def with_options(command: Callable[..., Any], verb: str) -> Callable[..., Any]:
-    """The command of a verb as typer takes it: parameters by keyword only are options, the others arguments."""
+#: The option of every verb.
+JSON = inspect.Parameter("json_", inspect.Parameter.KEYWORD_ONLY, default=False)
+
+
+def with_options(command: Callable[..., Told], verb: str) -> Callable[..., Any]:
+    """The command of a verb as typer takes it: parameters by keyword only are options, the others arguments.
+
+    It prints what the verb tells, with ``--json`` as a document, also of a verb that was interrupted and tells so far.
+    """
     import typer
 
-    hints, parameters = get_type_hints(command), []
-    for parameter in inspect.signature(command).parameters.values():
+    hints, parameters = get_type_hints(command) | {JSON.name: bool}, []
+    for parameter in (*inspect.signature(command).parameters.values(), JSON):
         words = words_of(verb, parameter.name)
         flag = words.pop("flag")
         is_option = parameter.kind is inspect.Parameter.KEYWORD_ONLY
@@ -43,8 +53,13 @@ def with_options(command: Callable[..., Any], verb: str) -> Callable[..., Any]:
         parameters.append(parameter.replace(annotation=Annotated[hints[parameter.name], shown]))
 
     @functools.wraps(command)
-    def described(*positional: Any, **named: Any) -> Any:
-        return command(*positional, **named)
+    def described(*positional: Any, json_: bool, **named: Any) -> int:
+        try:
+            return command(*positional, **named).print(json_)
+        except KeyboardInterrupt as error:
+            if (so_far := getattr(error, "told", None)) is not None:
+                so_far.print(json_)
+            raise
 
     described.__signature__ = inspect.Signature(parameters)  # type: ignore[attr-defined]
     described.__annotations__ = {parameter.name: parameter.annotation for parameter in parameters}

@@ -5,21 +5,20 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import navsym as nav
-from navsym.cli.output import emit
+from navsym.cli.output import Told
 
 if TYPE_CHECKING:
     from navsym.book.entries import Entry
 
 
-def command(search: str = "", *, json_: bool = False) -> int:
+def command(search: str = "") -> Told:
     """Search the formulas of the book, by words or by a formula in any names. Status 1 when nothing is found.
 
     Example: navsym book "a/sqrt(1 - e**2*sin(x)**2)"
     """
     entries = nav.book.search(search)
     shown = {"entries": [entry.record() for entry in entries]}
-    emit(shown, as_json=json_, text=lambda: as_text(entries))
-    return 0 if entries else 1
+    return Told(shown, lambda: as_text(entries), 0 if entries else 1)
 
 
 def as_text(entries: list[Entry]) -> str:

@@ -8,7 +8,7 @@ import time
 from typing import Any
 
 from navsym.cli._progress import Progress
-from navsym.cli.output import emit
+from navsym.cli.output import Told
 from navsym.core.choice import one_of
 
 #: Campaign -> what is attacked, for the table of docs/attacks.md.
@@ -44,8 +44,7 @@ def command(
     seconds: float = 3600.0,
     fresh: bool = False,
     markdown: bool = False,
-    json_: bool = False,
-) -> int:
+) -> Told:
     """Run a campaign of a checkout; it resumes where it was stopped. Status 1 when anything wrong was found.
 
     Example: navsym campaign mutants guaranteed_velocity --share 0.02 --jobs 2
@@ -68,8 +67,8 @@ def command(
     words = [word for word in sys.argv[1:] if word not in ("--markdown", "--fresh")]
     row = {"what": NAMES[name], "words": words, "seconds": spent}
     show = functools.partial(attacks.markdown_row, **row) if markdown else attacks.as_text
-    emit(document, as_json=json_, text=lambda: show(document))
-    return 1 if document["wrong"] or document["stopped"] or document["unsaved"] else 0
+    status = 1 if document["wrong"] or document["stopped"] or document["unsaved"] else 0
+    return Told(document, lambda: show(document), status)
 
 
 def load_attacks() -> Any:

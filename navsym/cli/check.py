@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 
 import navsym as nav
 from navsym.cli._progress import Progress
-from navsym.cli.output import emit, table
+from navsym.cli.output import Told, table
 
 if TYPE_CHECKING:
     from navsym.export.acceptance import Checks
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 MANY = 12
 
 
-def command(paths: list[Path], *, kernel: str | None = None, out: Path | None = None, json_: bool = False) -> int:
+def command(paths: list[Path], *, kernel: str | None = None, out: Path | None = None) -> Told:
     """Accept or reject every certificate; status 1 when one is rejected, or not proved by the kernel.
 
     Example: navsym check report/certificates
@@ -29,10 +29,9 @@ def command(paths: list[Path], *, kernel: str | None = None, out: Path | None = 
     except KeyboardInterrupt as error:
         so_far: Checks | None = getattr(error, "checks", None)
         if so_far is not None:
-            emit(so_far.document(), as_json=json_, text=lambda: as_text(so_far))
+            error.told = Told(so_far.document, lambda: as_text(so_far))  # type: ignore[attr-defined]
         raise
-    emit(checks.document(), as_json=json_, text=lambda: as_text(checks))
-    return 0 if checks.accepted else 1
+    return Told(checks.document, lambda: as_text(checks), 0 if checks.accepted else 1)
 
 
 def as_text(checks: Checks) -> str:

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 import navsym as nav
-from navsym.cli.output import emit
+from navsym.cli.output import Told
 
 
-def command(claim: str, *, fresh: bool = False, json_: bool = False) -> None:
+def command(claim: str, *, fresh: bool = False) -> Told:
     """Print BibTeX for the paper and for the verdict, from the ledger where it has one.
 
     Example: navsym cite "guaranteed_velocity:4.3.u2*" >> references.bib
     """
     cited = nav.cite(claim, fresh=fresh)
-    emit(cited.document(), as_json=json_, text=cited.bibtex)
+    return Told(cited.document, cited.bibtex)

@@ -5,11 +5,12 @@ from __future__ import annotations
 from pathlib import Path
 
 from navsym.cli._completion import PLACES, SHELLS
-from navsym.cli.output import OutputError, emit, write_text
+from navsym.cli.output import Told, write_text
 from navsym.core.choice import one_of
+from navsym.language.files import make_folder
 
 
-def command(shell: str, *, install: bool = False, json_: bool = False) -> None:
+def command(shell: str, *, install: bool = False) -> Told:
     """Print the script that completes verbs, options and claim ids, or install it for this user.
 
     Example: navsym completion bash --install
@@ -18,14 +19,9 @@ def command(shell: str, *, install: bool = False, json_: bool = False) -> None:
     one_of(shell, SHELLS, "completion")
     script = Path(__file__).with_suffix(f".{shell}").read_text("utf-8")
     if not install:
-        emit({"shell": shell, "script": script}, as_json=json_, text=script)
-        return
+        return Told({"shell": shell, "script": script}, script)
     path = Path.home() / PLACES[shell]
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        message = f"expected a folder that can be made; got '{error.strerror}'; print the script and place it yourself"
-        raise OutputError(message, where=str(path)) from error
+    make_folder(path.parent, "print the script and place it yourself")
     write_text(path, script)
     hint = "; add  fpath+=~/.zfunc  before compinit in ~/.zshrc" if shell == "zsh" else ""
-    emit({"shell": shell, "path": str(path)}, as_json=json_, text=f"{path}: open a new shell{hint}")
+    return Told({"shell": shell, "path": str(path)}, f"{path}: open a new shell{hint}")

@@ -2,18 +2,13 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import navsym as nav
 from navsym.cli._options import called_options
 from navsym.cli._progress import Progress
-from navsym.cli.output import emit, remark, table
-
-if TYPE_CHECKING:
-    from navsym.trajectory.conditioning import Conditions
+from navsym.cli.output import Told, remark, table
 
 
-def command(*, n: int, tau: str = "0.2", rho: str = "1/6371000", digits: int = 30, json_: bool = False) -> None:
+def command(*, n: int, tau: str = "0.2", rho: str = "1/6371000", digits: int = 30) -> Told:
     """Certified 2-norm condition numbers of the matrices N_p, N_pN, N_f and N_s, beside double precision.
 
     Example: navsym condition --n 20 --tau 0.2 --rho 1/6371000
@@ -23,11 +18,6 @@ def command(*, n: int, tau: str = "0.2", rho: str = "1/6371000", digits: int = 3
         found = nav.condition(n, tau, rho, digits, progress=bar.step)
     for line in found.warnings:
         remark(f"warning: {line}")
-    emit(found.document(), as_json=json_, text=lambda: as_text(found))
-
-
-def as_text(found: Conditions) -> str:
-    """The four enclosures beside double precision."""
     heads, rows = found.table()
     title = f"condition numbers, n = {found.n}, tau = {found.tau} s, rho = {found.rho} 1/m"
-    return f"{title}\n" + table(heads, rows, right=heads[1:])
+    return Told(found.document, lambda: table(heads, rows, title=title, right=heads[1:]))

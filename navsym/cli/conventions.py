@@ -10,7 +10,7 @@ import navsym as nav
 from navsym.cli._progress import Progress
 from navsym.cli._settings import values_of
 from navsym.cli.derive import aligned
-from navsym.cli.output import emit, table, write_text
+from navsym.cli.output import Told, table, write_text
 from navsym.conventions.card import HEADINGS, attitude_formula, list_neighbours
 
 
@@ -21,8 +21,7 @@ def command(
     convert: list[str] | None = None,
     latex: bool = False,
     html: Path | None = None,
-    json_: bool = False,
-) -> int:
+) -> Told:
     """Find all conventions under which an error model is right. Status 1 when there are none.
 
     Example: navsym conventions examples/conventions.toml
@@ -36,13 +35,10 @@ def command(
 
         write_text(html, conventions_page(answer))
     document = {**answer.document(), **({"conversion": shown.document()} if changes else {})}
+    document |= {"latex": shown.latex()} if latex else {}
     words = conversion_text if changes else as_text
-    emit(
-        document | ({"latex": shown.latex()} if latex else {}),
-        as_json=json_,
-        text=lambda: shown.latex() + "\n" if latex else words(document),
-    )
-    return 0 if answer.cards else 1
+    text = document["latex"] if latex else lambda: words(document)
+    return Told(document, text, 0 if answer.cards else 1)
 
 
 # Text for people

@@ -5,14 +5,14 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import navsym as nav
-from navsym.cli.output import emit, table
+from navsym.cli.output import Told, table
 from navsym.core.errors import EmptyError, ExpressionSyntaxError
 
 if TYPE_CHECKING:
     from navsym.core.datasets import Datasets
 
 
-def command(action: str = "list", names: list[str] | None = None, *, json_: bool = False) -> None:
+def command(action: str = "list", names: list[str] | None = None) -> Told:
     """List the data sets and their places, or fetch some and check them.
 
     Example: navsym data get srtm        (NAVSYM_DATA names a folder that already has them)
@@ -22,7 +22,7 @@ def command(action: str = "list", names: list[str] | None = None, *, json_: bool
     if action == "get" and not names:
         raise EmptyError("expected names of data sets; got none; see navsym data list", where="data get")
     found = nav.data(*names) if action == "get" and names else nav.data()
-    emit(found.document(), as_json=json_, text=lambda: as_text(found))
+    return Told(found.document, lambda: as_text(found))
 
 
 def as_text(found: Datasets) -> str:

@@ -7,7 +7,7 @@ from typing import Any
 
 import navsym as nav
 from navsym.cli._settings import values_of
-from navsym.cli.output import dumps, emit, write_text
+from navsym.cli.output import Told, dumps, write_text
 from navsym.core.errors import DomainError
 
 
@@ -18,8 +18,7 @@ def command(
     set_: list[str] | None = None,
     out: Path | None = None,
     certificate: Path | None = None,
-    json_: bool = False,
-) -> None:
+) -> Told:
     """Derive the transition matrix, the regressors and the conditions of optimality from a model.
 
     Example: navsym derive examples/schuler-velocity.toml
@@ -35,7 +34,7 @@ def command(
     text = derivation.latex() if latex else as_text(document)
     if out is not None:
         write_text(out, text)
-    emit(document, as_json=json_, text=text)
+    return Told(document, text)
 
 
 def as_text(data: dict[str, Any]) -> str:

@@ -7,11 +7,11 @@ from typing import Any
 
 import navsym as nav
 from navsym.cli._settings import values_of
-from navsym.cli.output import emit, table
+from navsym.cli.output import Told, table
 from navsym.core.errors import ExpressionSyntaxError
 
 
-def command(old: str, new: str, *, box: list[str] | None = None, json_: bool = False) -> int:
+def command(old: str, new: str, *, box: list[str] | None = None) -> Told:
     """Compare two formulas, files or folders exactly. Status 1 unless every formula is proved equal.
 
     Example: navsym diff "sin(2*a)" "2*sin(a)*cos(a)"
@@ -19,8 +19,7 @@ def command(old: str, new: str, *, box: list[str] | None = None, json_: bool = F
     Example: navsym diff build/old build/new
     """
     found = nav.diff(old, new, box=read_ranges(box))
-    emit(found.document(), as_json=json_, text=lambda: table(*found.table()))
-    return 0 if found.equal else 1
+    return Told(found.document, lambda: table(*found.table()), 0 if found.equal else 1)
 
 
 def read_ranges(texts: Sequence[str] | None) -> dict[str, Any]:

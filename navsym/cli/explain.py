@@ -6,7 +6,7 @@ import textwrap
 from typing import TYPE_CHECKING
 
 import navsym as nav
-from navsym.cli.output import emit
+from navsym.cli.output import Told
 
 if TYPE_CHECKING:
     from navsym.report.explain import Explanation
@@ -15,14 +15,13 @@ WIDTH = 100
 FORMULA = " " * 6
 
 
-def command(claim: str, *, seconds: float = 90.0, json_: bool = False) -> int:
+def command(claim: str, *, seconds: float = 90.0) -> Told:
     """Tell why a claim has its verdict.
 
     Example: navsym explain guaranteed_velocity:4.3.u2
     """
     told = nav.explain(claim, seconds=seconds)
-    emit(told.document(), as_json=json_, text=lambda: as_text(told))
-    return 0 if told.record.is_expected else 1
+    return Told(told.document, lambda: as_text(told), 0 if told.record.is_expected else 1)
 
 
 def indented(formula: str) -> str:

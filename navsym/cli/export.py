@@ -9,7 +9,7 @@ import navsym as nav
 from navsym.cli._options import called_options
 from navsym.cli._progress import Progress
 from navsym.cli._settings import values_of
-from navsym.cli.output import emit, table
+from navsym.cli.output import Told, table
 
 if TYPE_CHECKING:
     from navsym.export.package import Exported
@@ -29,8 +29,7 @@ def command(
     vectors: int = 48,
     unit: list[str] | None = None,
     run: bool = True,
-    json_: bool = False,
-) -> int:
+) -> Told:
     """Write formulas that hold as code. A claim that does not hold is refused, with the one that corrects it.
 
     Example: navsym export guaranteed_velocity:4.13.y3 --to c,python --out build/drift
@@ -54,8 +53,7 @@ def command(
             command=words,
             progress=bar.follow,
         )
-    emit(exported.document(), as_json=json_, text=lambda: as_text(exported))
-    return 0
+    return Told(exported.document, lambda: as_text(exported))
 
 
 def as_text(exported: Exported) -> str:

@@ -6,21 +6,15 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import navsym as nav
-from navsym.cli.output import emit, remark
+from navsym.cli.output import Told, remark
 
 if TYPE_CHECKING:
     from navsym.multimodel.engine import Estimates
 
 
 def command(
-    file: Path,
-    *,
-    method: str = "pulsating",
-    depth: int | None = None,
-    missing: bool = False,
-    form: str = "joseph",
-    json_: bool = False,
-) -> None:
+    file: Path, *, method: str = "pulsating", depth: int | None = None, missing: bool = False, form: str = "joseph"
+) -> Told:
     """Mode probabilities, mean, covariance and log-likelihood after every measurement.
 
     Example: navsym filter examples/switching.json --method k-pulsating --depth 2
@@ -28,7 +22,7 @@ def command(
     found = nav.filter(file, method=method, depth=depth, missing=missing, form=form)
     for sentence in found.remarks:
         remark(sentence)
-    emit(found.document(), as_json=json_, text=lambda: as_text(found))
+    return Told(found.document, lambda: as_text(found))
 
 
 def as_text(found: Estimates) -> str:

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import navsym as nav
 from navsym.cli._settings import values_of
-from navsym.cli.output import emit, put, write_text
+from navsym.cli.output import Told, write_text
 
 
 def command(
@@ -19,8 +19,7 @@ def command(
     grid: int = 201,
     mixture: float = 1.0,
     out: Path | None = None,
-    json_: bool = False,
-) -> None:
+) -> Told:
     """Write the linear or quadratic programme of the problem on a grid of times.
 
     Example: navsym formulate examples/schuler-velocity.toml --target drift --set T=1 --to mps --out drift.mps
@@ -28,7 +27,5 @@ def command(
     answer = nav.formulate(file, target, to=to, kind=kind, grid=grid, mixture=mixture, values=values_of(set_))
     if out is not None:
         write_text(out, answer.text)
-    if json_:
-        emit(answer.document() | {"out": None if out is None else str(out)}, as_json=True, text="")
-    else:
-        put(answer.text if out is None else f"{out}: {kind} for {to}, {grid} times of each measurement\n")
+    text = answer.text if out is None else f"{out}: {kind} for {to}, {grid} times of each measurement"
+    return Told(answer.document() | {"out": None if out is None else str(out)}, text)

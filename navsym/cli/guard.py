@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING, Any
 
 from navsym.cli._options import called_options
 from navsym.cli._settings import values_of
-from navsym.cli.output import emit, remark, table
+from navsym.cli.output import Told, remark, table
 
 if TYPE_CHECKING:
     from navsym.guaranteed.streaming.run import Stream
@@ -27,8 +27,7 @@ def command(
     step: str | None = None,
     state: Path | None = None,
     set_: list[str] | None = None,
-    json_: bool = False,
-) -> None:
+) -> Told:
     """Estimate the target at the time of each epoch, from all epochs so far or the last --memory, with its radius.
 
     The radius is the least sum of sigma times weight of an unbiased estimate. Data that no state explains are an error.
@@ -44,7 +43,7 @@ def command(
         )
     for line in stream.remarks:
         remark(line)
-    emit(stream.document(), as_json=json_, text=lambda: as_text(stream))
+    return Told(stream.document, lambda: as_text(stream))
 
 
 def as_text(stream: Stream) -> str:

@@ -3,27 +3,19 @@
 from __future__ import annotations
 
 from pathlib import Path
-from typing import TYPE_CHECKING
 
 import navsym as nav
-from navsym.cli.output import emit
-
-if TYPE_CHECKING:
-    from navsym.claims.workspace import Workspace
+from navsym.cli.output import Told
 
 
-def command(folder: Path = Path("."), *, examples: bool = False, json_: bool = False) -> None:
+def command(folder: Path = Path("."), *, examples: bool = False) -> Told:
     """Make a workspace. Inside it, or below, every verb knows what navsym.toml lists.
 
     Example: navsym init drive
     """
     workspace = nav.init(folder, examples=examples)
-    said = f"{workspace.root}; the documentation says what to try" if examples else ""
-    emit(workspace.document(), as_json=json_, text=lambda: said or as_text(workspace, folder))
-
-
-def as_text(workspace: Workspace, folder: Path) -> str:
-    """The files, and the next step."""
+    if examples:
+        return Told(workspace.document, f"{workspace.root}; the documentation says what to try")
     files = [name for kind in workspace.patterns for name in workspace.list_files(kind)]
     step = "navsym verify" if folder == Path(".") else f"cd {folder}; navsym verify"
-    return "\n".join(["navsym.toml", *files, f"next: {step}"])
+    return Told(workspace.document, "\n".join(["navsym.toml", *files, f"next: {step}"]))

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import navsym as nav
 from navsym.cli._options import called_options
-from navsym.cli.output import emit, table
+from navsym.cli.output import Told, table
 
 if TYPE_CHECKING:
     from navsym.trajectory.limits import Limit, Limits
@@ -20,15 +20,14 @@ def command(
     jerk: float | None = None,
     step: float | None = None,
     memory: float | None = None,
-    json_: bool = False,
-) -> None:
+) -> Told:
     """The least error of a velocity that any algorithm guarantees from positions, and the rule that reaches it.
 
     Example: navsym limits --noise 5 --acceleration 0.5 --step 1
     """
     with called_options("limits"):
         found = nav.limits(noise, acceleration=acceleration, jerk=jerk, step=step, memory=memory)
-    emit(found.document(), as_json=json_, text=lambda: as_text(found))
+    return Told(found.document, lambda: as_text(found))
 
 
 def as_text(found: Limits) -> str:

@@ -2,13 +2,9 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
-
 import navsym as nav
-from navsym.cli.output import emit, remark, table
-
-if TYPE_CHECKING:
-    from navsym.report.listing import Listing
+from navsym.claims.display import count_in_words
+from navsym.cli.output import Told, remark, table
 
 
 def command(
@@ -17,8 +13,7 @@ def command(
     status: list[str] | None = None,
     slip: str | None = None,
     words: str | None = None,
-    json_: bool = False,
-) -> None:
+) -> Told:
     """List claims in the order of the paper, without deciding them.
 
     A claim shows its declaration where the ledger does not hold it, or the text of its paper has changed since.
@@ -28,9 +23,4 @@ def command(
     listing = nav.claims(*(paper or []), status=status or (), slip=slip, words=words or "")
     for name in listing.changed:
         remark(f"the text of {name} has changed since its verdicts were written: navsym verify {name} --write")
-    emit(listing.document(), as_json=json_, text=lambda: as_text(listing))
-
-
-def as_text(listing: Listing) -> str:
-    """A table with the number of claims below it."""
-    return f"{table(*listing.table())}\n{len(listing)} claim{'' if len(listing) == 1 else 's'}"
+    return Told(listing.document, lambda: f"{table(*listing.table())}\n{count_in_words(len(listing), 'claim')}")

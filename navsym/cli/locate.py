@@ -7,15 +7,13 @@ from typing import TYPE_CHECKING
 
 import navsym as nav
 from navsym.cli._options import called_options
-from navsym.cli.output import emit, remark, table
+from navsym.cli.output import Told, remark, table
 
 if TYPE_CHECKING:
     from navsym.terrain.locate import Fix
 
 
-def command(
-    config: Path, *, method: str = "full", maps: bool = False, offset_free: bool = False, json_: bool = False
-) -> None:
+def command(config: Path, *, method: str = "full", maps: bool = False, offset_free: bool = False) -> Told:
     """Fix a position, and the errors of velocity, over a height map from a measured profile.
 
     Positions are in metres of the map, velocities in m/s, the criterion in square metres.
@@ -26,7 +24,7 @@ def command(
         found = nav.locate(config, method, maps=maps, offset_free=offset_free)
     for line in found.remarks:
         remark(f"note: {line}")
-    emit(found.document(), as_json=json_, text=lambda: as_text(found))
+    return Told(found.document, lambda: as_text(found))
 
 
 def as_text(found: Fix) -> str:

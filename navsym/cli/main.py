@@ -1,9 +1,9 @@
 """The command ``navsym``: finds the verb, runs it, and turns every error into one clear line.
 
-A verb is a file of this folder with a function ``command``; its name is the file name with ``-`` for ``_``, its help
-line the first line of the file, and the words of its options stand in ``options.toml``. Help lines are read
-without importing the files, and only the verb that was called is imported: engines are slow
-to load, and ``navsym --help`` is not.
+A verb is a file of this folder with a function ``command`` that returns what it has to say; its name is the file name
+with ``-`` for ``_``, its help line the first line of the file, and the words of its options stand in ``options.toml``.
+Help lines are read without importing the files, and only the verb that was called is imported: engines are slow to
+load, and ``navsym --help`` is not.
 """
 
 from __future__ import annotations

@@ -8,7 +8,7 @@ from typing import Any
 import navsym as nav
 from navsym.cli._settings import values_of
 from navsym.cli.diff import read_ranges
-from navsym.cli.output import emit
+from navsym.cli.output import Told
 from navsym.language.tomlfile import parse_toml
 
 
@@ -30,8 +30,7 @@ def command(
     reason: str = "",
     slip: str = "paper",
     folder: Path | None = None,
-    json_: bool = False,
-) -> None:
+) -> Told:
     """Decide printed = derived, or a formula, and append the claim to its module, with the verdict.
 
     Example: navsym new-claim schuler_pendulum 1 --printed "2*pi*sqrt(R/g)" --derived "2*pi/sqrt(g/R)" --positive R,g
@@ -56,7 +55,7 @@ def command(
         folder=folder,
     )
     is_numeral = tolerance is None and printed.strip("+-").replace(".", "", 1).isdigit()
-    emit(claim.document(), as_json=json_, text=lambda: as_text(claim.document(), number, is_numeral))
+    return Told(claim.document, lambda: as_text(claim.document(), number, is_numeral))
 
 
 def read_words(settings: list[str]) -> dict[str, Any]:

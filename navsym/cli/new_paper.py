@@ -5,7 +5,7 @@ from __future__ import annotations
 from pathlib import Path
 
 import navsym as nav
-from navsym.cli.output import emit
+from navsym.cli.output import Told
 
 
 def command(
@@ -18,8 +18,7 @@ def command(
     language: str = "English",
     equations: str = "1",
     folder: Path | None = None,
-    json_: bool = False,
-) -> None:
+) -> Told:
     """Write derivations/NAME.py. It passes the generic tests at once; add claims with navsym new-claim.
 
     Example: navsym new-paper schuler_pendulum --author "A. Author" --year 1923 --equations "1-6"
@@ -34,7 +33,7 @@ def command(
         equations=equations,
         folder=folder,
     )
-    emit(paper.document(), as_json=json_, text=lambda: f"{paper.path}\nnext: {next_step(name, folder)}")
+    return Told(paper.document, lambda: f"{paper.path}\nnext: {next_step(name, folder)}")
 
 
 def next_step(name: str, folder: Path | None) -> str:

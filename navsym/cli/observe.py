@@ -8,7 +8,7 @@ from typing import Any
 
 import navsym as nav
 from navsym.cli._settings import values_of
-from navsym.cli.output import emit, table, write_text
+from navsym.cli.output import Told, table, write_text
 from navsym.core.errors import NavsymError
 
 
@@ -29,8 +29,7 @@ def command(
     jacobians: Path | None = None,
     html: Path | None = None,
     latex: Path | None = None,
-    json_: bool = False,
-) -> int:
+) -> Told:
     """Show the exact observability of a model: dimensions, rank drops, splits, gains by poles.
 
     Example: navsym observe examples/schuler-velocity.toml
@@ -61,8 +60,7 @@ def command(
         data["accuracy"] = answer.accuracy(until, every=every, demands=demands, scales=scales, start=first).document()
     kept = answer.null_space(**read_jacobians(jacobians)) if jacobians is not None else None
     data |= {"null_space": kept.document()} if kept is not None else {}
-    emit(data, as_json=json_, text=lambda: as_text(data))
-    return 0 if kept is None or kept.holds else 1
+    return Told(data, lambda: as_text(data), 0 if kept is None or kept.holds else 1)
 
 
 # Text for people

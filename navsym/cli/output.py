@@ -7,6 +7,7 @@ import os
 import re
 import sys
 from collections.abc import Callable, Iterable, Mapping, Sequence
+from dataclasses import dataclass
 from typing import IO, Any
 
 from navsym.cli._progress import LINE
@@ -35,20 +36,28 @@ COLOUR = re.compile("(\x1b\\[[0-9;]*m)")
 # One document, or text
 
 
-def emit(document: Any, *, as_json: bool, text: str | Callable[[], str | None]) -> None:
-    """Print the document as JSON, or the text for people.
+@dataclass(frozen=True, slots=True)
+class Told:
+    """What a verb has to say, as data and for people, and its exit status.
 
-    document : plain data; numpy arrays and scalars are written as lists and numbers
-    text     : the text, or a function that returns it, called only when it is wanted;
-               a function that prints for itself returns None
-    Raises ValueError when the document holds NaN or an infinity: those are decimal strings or null.
+    document : plain data, or a function that returns it; numpy arrays and scalars are written as lists and numbers
+    text     : the text, or a function that returns it; of the two functions the one is called that is wanted
     """
-    if as_json:
-        put(dumps(document) + "\n")
-        return
-    shown = text() if callable(text) else text
-    if shown:
-        put(harmless(shown if shown.endswith("\n") else shown + "\n"))
+
+    document: Any
+    text: str | Callable[[], str]
+    status: int = 0
+
+    def print(self, as_json: bool) -> int:
+        """Print the document as JSON or the text, and return the status.
+
+        Raises ValueError when the document holds NaN or an infinity: those are decimal strings or null.
+        """
+        if as_json:
+            put(dumps(self.document() if callable(self.document) else self.document) + "\n")
+        elif shown := self.text() if callable(self.text) else self.text:
+            put(harmless(shown if shown.endswith("\n") else shown + "\n"))
+        return self.status
 
 
 def dumps(document: Any, *, indent: int | None = 2) -> str:

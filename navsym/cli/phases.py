@@ -8,7 +8,7 @@ from typing import Any
 import navsym as nav
 from navsym.cli._progress import Progress
 from navsym.cli._settings import values_of
-from navsym.cli.output import dumps, emit, table, write_text
+from navsym.cli.output import Told, dumps, table, write_text
 from navsym.core.errors import DuplicateError, ExpressionSyntaxError
 
 RESUME = "nothing is saved; a shorter --range, --quick or fewer --seconds take less time"
@@ -25,8 +25,7 @@ def command(
     unique: bool = False,
     seconds: float = 300.0,
     out: Path | None = None,
-    json_: bool = False,
-) -> None:
+) -> Told:
     """Find the optimal times, weights and value for every value of a parameter.
 
     Example: navsym phases examples/schuler-velocity.toml --target drift --range "0, 2*pi"
@@ -54,7 +53,7 @@ def command(
         for k, certificate in enumerate(answer.certificates()):
             write_text(out.with_name(f"{out.stem}-{k + 1}.json"), dumps(certificate) + "\n")
     document = answer.document()
-    emit(document, as_json=json_, text=lambda: (map_text if len(names) == 2 else as_text)(document))
+    return Told(document, lambda: (map_text if len(names) == 2 else as_text)(document))
 
 
 def ranges_of(names: list[str], text: str) -> dict[str, tuple[str, str]]:

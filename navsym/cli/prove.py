@@ -7,13 +7,13 @@ from typing import TYPE_CHECKING
 
 import navsym as nav
 from navsym.cli._progress import Progress
-from navsym.cli.output import emit, table
+from navsym.cli.output import Told, table
 
 if TYPE_CHECKING:
     from navsym.claims import Verdict, Verdicts
 
 
-def command(file: Path, *, jobs: int = 1, seconds: float = 20.0, json_: bool = False) -> int:
+def command(file: Path, *, jobs: int = 1, seconds: float = 20.0) -> Told:
     """Decide the formulas of a claim file. Status 1 when one of them is refuted or open, 2 when one has no value.
 
     Example: navsym prove examples/formulas.toml
@@ -28,14 +28,14 @@ def command(file: Path, *, jobs: int = 1, seconds: float = 20.0, json_: bool = F
                 bar.step(verdict.id)
 
             verdicts = nav.prove(file, jobs=jobs, seconds=seconds, progress=step)
-    except KeyboardInterrupt:
+    except KeyboardInterrupt as error:
         so_far = nav.Verdicts(tuple(found))
-        emit({**so_far.document(), "interrupted": True}, as_json=json_, text=lambda: as_text(so_far))
+        document = {**so_far.document(), "interrupted": True}
+        error.told = Told(document, lambda: as_text(so_far))  # type: ignore[attr-defined]
         raise
-    emit(verdicts.document(), as_json=json_, text=lambda: as_text(verdicts))
-    if verdicts.first_error:
-        return verdicts.first_error.status
-    return 1 if any(verdict.status in (nav.REFUTED, nav.OPEN) for verdict in verdicts) else 0
+    fails = any(verdict.status in (nav.REFUTED, nav.OPEN) for verdict in verdicts)
+    status = verdicts.first_error.status if verdicts.first_error else int(fails)
+    return Told(verdicts.document, lambda: as_text(verdicts), status)
 
 
 def as_text(verdicts: Verdicts) -> str:

@@ -7,21 +7,15 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import navsym as nav
-from navsym.cli.output import emit, remark, write_text
+from navsym.cli.output import Told, remark, write_text
 
 if TYPE_CHECKING:
     from navsym.language.latex.reading import ReadFormula, Reading
 
 
 def command(
-    file: str,
-    *,
-    symbols: Path | None = None,
-    out: Path | None = None,
-    definitions: bool = False,
-    declare: bool = False,
-    json_: bool = False,
-) -> int:
+    file: str, *, symbols: Path | None = None, out: Path | None = None, definitions: bool = False, declare: bool = False
+) -> Told:
     """Read the formulas of a document. Status 1 when one of them is refused.
 
     Example: navsym read examples/double-angle.md --symbols examples/double-angle.toml
@@ -33,11 +27,9 @@ def command(
         text = reading.claims(definitions=definitions)
         write_text(out, text)
         remark(f"{text.count('[[claim]]')} claims in {out}")
-    if declare:
-        emit({**reading.document(), "declarations": reading.declarations()}, as_json=json_, text=reading.declarations)
-    else:
-        emit(reading.document(), as_json=json_, text=lambda: as_text(reading))
-    return 0 if len(reading.read) == len(reading.formulas) else 1
+    document = reading.document() | ({"declarations": reading.declarations()} if declare else {})
+    status = 0 if len(reading.read) == len(reading.formulas) else 1
+    return Told(document, reading.declarations if declare else lambda: as_text(reading), status)
 
 
 def as_text(reading: Reading) -> str:

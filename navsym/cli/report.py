@@ -6,7 +6,7 @@ from pathlib import Path
 
 import navsym as nav
 from navsym.cli._progress import Progress
-from navsym.cli.output import emit, remark
+from navsym.cli.output import Told, remark
 from navsym.cli.verify import unexpected_lines
 
 
@@ -18,8 +18,7 @@ def command(
     jobs: int | None = None,
     seconds: float = 90.0,
     fresh: bool = False,
-    json_: bool = False,
-) -> int:
+) -> Told:
     """Decide the claims (or read verdicts with --from) and write the pages. Exit status as in verify.
 
     Example: navsym report alpha_beta_filter --out report
@@ -38,5 +37,4 @@ def command(
         )
     wrong = site.ledger.unexpected
     told = "\n".join([f"{len(site.files)} files; open {site.out / 'index.html'}", *unexpected_lines(wrong)])
-    emit(site.document(), as_json=json_, text=told)
-    return 1 if wrong else 0
+    return Told(site.document, told, 1 if wrong else 0)

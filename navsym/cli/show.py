@@ -5,14 +5,14 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 import navsym as nav
-from navsym.cli.output import emit
+from navsym.cli.output import Told
 from navsym.core.errors import printable
 
 if TYPE_CHECKING:
     from navsym.claims import Record
 
 
-def command(claim: str, *, seconds: float = 90.0, json_: bool = False) -> int:
+def command(claim: str, *, seconds: float = 90.0) -> Told:
     """Show both sides of a claim and its verdict, decided now; all parts of an equation that has several.
 
     Example: navsym show guaranteed_velocity:4.3.u2
@@ -20,8 +20,8 @@ def command(claim: str, *, seconds: float = 90.0, json_: bool = False) -> int:
     records = nav.show(claim, seconds=seconds)
     entries = [record.to_json() for record in records]
     document = entries[0] if len(entries) == 1 else {"claims": entries}
-    emit(document, as_json=json_, text=lambda: "\n\n".join(map(as_text, records)))
-    return 0 if all(record.is_expected for record in records) else 1
+    status = 0 if all(record.is_expected for record in records) else 1
+    return Told(document, lambda: "\n\n".join(map(as_text, records)), status)
 
 
 def as_text(record: Record) -> str:

@@ -8,18 +8,12 @@ from pathlib import Path
 import navsym as nav
 from navsym.cli._options import called_options
 from navsym.cli._progress import Progress
-from navsym.cli.output import emit, table
+from navsym.cli.output import Told, table
 
 
 def command(
-    name: str,
-    *,
-    runs: int | None = None,
-    steps: int | None = None,
-    seed: int = 1,
-    journal: Path | None = None,
-    json_: bool = False,
-) -> None:
+    name: str, *, runs: int | None = None, steps: int | None = None, seed: int = 1, journal: Path | None = None
+) -> Told:
     """Run the numerical experiment of a paper again; its figures, with confidence intervals where it is random.
 
     Example: navsym simulate multistructure --runs 200 --seed 1
@@ -28,7 +22,7 @@ def command(
 
     with called_options("simulate"), Progress("runs", resume=resume(journal, options_of(name))) as bar:
         found = nav.simulate(name, runs=runs, steps=steps, seed=seed, journal=journal, progress=bar.follow)
-    emit(found.document(), as_json=json_, text=lambda: table(*found.table()))
+    return Told(found.document, lambda: table(*found.table()))
 
 
 def resume(journal: Path | None, accepted: Container[str]) -> str:

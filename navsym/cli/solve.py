@@ -8,7 +8,7 @@ from typing import Any
 import navsym as nav
 from navsym.cli._progress import Progress
 from navsym.cli._settings import values_of
-from navsym.cli.output import dumps, emit, table, write_text
+from navsym.cli.output import Told, dumps, table, write_text
 
 
 def command(
@@ -20,8 +20,7 @@ def command(
     compare: bool = False,
     design: bool = False,
     out: Path | None = None,
-    json_: bool = False,
-) -> int:
+) -> Told:
     """Find the estimator with the smallest guaranteed standard deviation, with a certificate that can be replayed.
 
     The value is in units of the target; times run from the start of the interval.
@@ -39,8 +38,8 @@ def command(
 
         with Progress("solvers", len(LP_SOLVERS), "without --compare the answer comes at once") as bar:
             document["compare"] = estimator.compare(progress=bar.step).document()
-    emit(document, as_json=json_, text=lambda: (design_text if design else as_text)(document))
-    return 0 if document["status"] == "CERTIFIED" else 1
+    status = 0 if document["status"] == "CERTIFIED" else 1
+    return Told(document, lambda: (design_text if design else as_text)(document), status)
 
 
 def as_text(document: dict[str, Any]) -> str:

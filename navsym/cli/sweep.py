@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING
 import navsym as nav
 from navsym.cli._options import called_options
 from navsym.cli._progress import Progress
-from navsym.cli.output import emit
+from navsym.cli.output import Told
 
 if TYPE_CHECKING:
     from navsym.studies.run import Study
@@ -24,8 +24,7 @@ def command(
     size: int | None = None,
     out: Path | None = None,
     fresh: bool = False,
-    json_: bool = False,
-) -> int:
+) -> Told:
     """Compute the shards of a study that are not kept yet, and sum up; stopped, it goes on where it was.
 
     Every job has its own seed sequence: the rows are the same bits whoever computes them.
@@ -44,8 +43,9 @@ def command(
             patience=patience,
             progress=bar.follow,
         )
-    emit(found.document(), as_json=json_, text=lambda: as_text(found))
-    return 1 if found.done < found.plan.jobs else 3 if found.unsaved else 0
+    return Told(
+        found.document, lambda: as_text(found), 1 if found.done < found.plan.jobs else 3 if found.unsaved else 0
+    )
 
 
 def as_text(found: Study) -> str:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING
 import navsym as nav
 from navsym.cli._options import called_options
 from navsym.cli._progress import Progress
-from navsym.cli.output import emit, remark, table
+from navsym.cli.output import Told, remark, table
 
 if TYPE_CHECKING:
     from navsym.trajectory.motion import Track
@@ -25,8 +25,7 @@ def command(
     policy: str = "strict",
     reference: Path | None = None,
     out: Path | None = None,
-    json_: bool = False,
-) -> None:
+) -> Told:
     """Velocity (m/s) and acceleration (m/s^2) from measured positions, with standard deviations.
 
     Seconds, degrees, metres, or the units in the heads of the columns, such as t (ms) or height (feet).
@@ -51,7 +50,7 @@ def command(
         remark(f"warning: {line}")
     for line in found.repairs:
         remark(f"repaired: {line}")
-    emit(found.document() if json_ else None, as_json=json_, text=lambda: as_text(found))
+    return Told(found.document, lambda: as_text(found))
 
 
 def as_text(found: Track) -> str:

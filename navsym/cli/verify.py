@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import navsym as nav
 from navsym.cli._progress import Progress
-from navsym.cli.output import emit, remark, table
+from navsym.cli.output import Told, remark, table
 from navsym.core.errors import NavsymError
 
 if TYPE_CHECKING:
@@ -29,8 +29,7 @@ def command(
     jobs: int | None = None,
     seconds: float = 90.0,
     fresh: bool = False,
-    json_: bool = False,
-) -> int:
+) -> Told:
     """Decide every claim of the papers. Status 1 when a verdict is not the one declared.
 
     Status 3 when every verdict is as declared but some of a ledger could not be kept; they are named.
@@ -56,8 +55,8 @@ def command(
         except NavsymError as error:  # what was decided is printed all the same
             remark(f"the ledger is not written: {error}")
             ledger = replace(ledger, unsaved=tuple(record.id for record in ledger))
-    emit(ledger.document(), as_json=json_, text=lambda: as_text(ledger, time.monotonic() - started))
-    return 1 if ledger.unexpected or ledger.missing else 3 if ledger.unsaved and ledger.is_kept else 0
+    status = 1 if ledger.unexpected or ledger.missing else 3 if ledger.unsaved and ledger.is_kept else 0
+    return Told(ledger.document, lambda: as_text(ledger, time.monotonic() - started), status)
 
 
 def as_text(ledger: Ledger, seconds: float) -> str:

@@ -15,13 +15,14 @@ import sympy as sp
 
 from navsym.claims import PROVED, Statement, Verdict
 from navsym.core.errors import DomainError
-from navsym.export.functions import function_of, require_exportable
+from navsym.export.functions import formula_lines, function_of, require_exportable
 from navsym.export.parts import ExportedFunction, Layout, Material, Output, Source, State, overlap
 from navsym.prove.ladder import decide_within
 from navsym.prove.wording import expression_text
 
 SECONDS = 90.0
 Decided = Callable[[str], Material]
+Results = Sequence[tuple[Output, Sequence[sp.Expr]]]
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,7 +71,7 @@ class Chain:
         names = Names()
         lets = [let for link, part in zip(self.links, parts, strict=True) for let in bound(link, part, names)]
         results = [self.output(o, entries, names) for o, entries in self.outputs.items()]
-        whole = Material(name, results, self.ranges(parts, names), self.source(parts, lets), tuple(lets))
+        whole = Material(name, results, self.ranges(parts, names), self.source(parts, lets, results), tuple(lets))
         return function_of([whole], real=real, name=name, layout=self.layout)
 
     def output(self, name: str, entries: tuple[str, ...] | str, names: Names) -> tuple[Output, list[sp.Expr]]:
@@ -88,8 +89,9 @@ class Chain:
                 found[symbol] = overlap(found.get(symbol, (None, None)), ends)
         return found
 
-    def source(self, parts: Sequence[Material], lets: Sequence[tuple[sp.Symbol, sp.Expr]]) -> Source:
+    def source(self, parts: Sequence[Material], lets: Sequence[tuple[sp.Symbol, sp.Expr]], results: Results) -> Source:
         """The sources of all links as one; the weakest status counts."""
+        renamed = [(output, flat) for output, flat in results if output.shape or output.name != str(flat[0])]
         order = ("PROVED", "CERTIFIED", "CONFIRMED")
         sources = [part.source for part in parts]
         said = [s for s in sources if s.method != "definition"] or sources  # a mere name for a value says nothing
@@ -104,15 +106,9 @@ class Chain:
             method=", ".join(dict.fromkeys(s.method for s in sources)),
             scope="; ".join(dict.fromkeys(s.scope for s in sources if s.scope)),
             assumptions=tuple(dict.fromkeys(a for s in sources for a in s.assumptions)),
-            formula=(*(f"{name.name} = {expression_text(formula)}" for name, formula in lets), *self.results()),
+            formula=(*(f"{name.name} = {expression_text(formula)}" for name, formula in lets), *formula_lines(renamed)),
             certificate={"kind": "all", "of": certificates} if certificates else None,
         )
-
-    def results(self) -> list[str]:
-        """Which value is which result."""
-        numbers = [f"{o} = {entry}" for o, entry in self.outputs.items() if isinstance(entry, str) and entry != o]
-        arrays = [(o, entries) for o, entries in self.outputs.items() if not isinstance(entries, str)]
-        return [*numbers, *(f"{o}[{k}] = {entry}" for o, entries in arrays for k, entry in enumerate(entries))]
 
 
 class Names:

@@ -13,6 +13,7 @@ from flint import arb
 from navsym.core.balls import precision
 from navsym.export.accuracy.continuation import analyse
 from navsym.export.accuracy.rounding import BITS, LIBRARY, Arithmetic, literals_of
+from navsym.export.accuracy.vectors import sample
 from navsym.export.expression_graph import Graph, build
 from navsym.export.forms import factored, safe
 from navsym.prove.identities import has_unique_form, vanishes_identically
@@ -48,18 +49,11 @@ def lost_digits(graph: Graph, box: list[tuple[float, float]], arithmetic: Arithm
     literals, total = literals_of(graph, arithmetic), 0.0
     for _ in range(SAMPLES):
         with precision(BITS):
-            point = [arb(spread(generator, low, high)) for low, high in box]
+            point = [arb(sample(low, high, generator)) for low, high in box]
             done = analyse(graph, point, arithmetic, literals)
             worst = max(float(done[r].relative / arithmetic.unit()) for r in graph.roots)
         total += min(60.0, math.log2(worst)) if worst > 1 else 0.0
     return total / SAMPLES
-
-
-def spread(generator: random.Random, low: float, high: float) -> float:
-    """A number of the range, often near zero when the range is positive."""
-    if low > 0 and generator.random() < 0.5:
-        return math.exp(generator.uniform(math.log(max(low, high * 1e-6)), math.log(high)))
-    return 2 * generator.uniform(low / 2, high / 2)
 
 
 def tie_to_formula(

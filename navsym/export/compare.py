@@ -20,7 +20,7 @@ from navsym.claims.display import write_card
 from navsym.core.answers import Answer, named
 from navsym.core.balls import precision, series_terms
 from navsym.core.errors import DomainError, EmptyError, ShapeError, TooLargeError, UnknownSymbolError
-from navsym.export.accuracy.rounding import DOUBLE, followed, up
+from navsym.export.accuracy.rounding import DOUBLE, float_above, followed, up
 from navsym.export.differences import exact_range
 from navsym.export.expression_graph import Graph
 from navsym.export.tracing import UntraceableError, trace, write_trace
@@ -189,13 +189,6 @@ def read_box(ranges: Mapping[str, Any]) -> dict[str, tuple[float, float]]:
     return found
 
 
-def float_above(x: arb) -> float:
-    """The least double that is certainly not below a ball, or the next one."""
-    top = x.upper()
-    near = float(top)
-    return near if arb(near) >= top else math.nextafter(near, math.inf)
-
-
 def takes_names(function: Callable[..., Any], names: Sequence[str]) -> bool:
     """True when the function has parameters of exactly these names."""
     try:
@@ -248,7 +241,7 @@ def certify(
             rounding = followed(graph, inputs, ARITHMETIC, literals)[graph.roots[0]].absolute
             apart = arb(0) if difference is None else up(enclose_on(difference, sides.names, part))
             total = rounding + apart
-            return float_above(total) if total.is_finite() else math.inf
+            return float_above(total)
 
     bound, part = divide_boxes(bound_on, box, worst.difference)
     if bound == math.inf:

@@ -31,7 +31,6 @@ from navsym.language.tokens import Source, tokenize
 from navsym.language.values import read_constant, write_value
 from navsym.prove.claimfile import (
     FileClaim,
-    claims_from,
     existing_parts,
     read_claims,
     require_numbers,
@@ -161,7 +160,7 @@ def diff(old: Any, new: Any, *, box: Mapping[str, Any] | None = None, **ranges: 
     if kinds[0] == LEDGER:
         return compare_ledgers(*map(read_ledger, sides))
     known = {name: exact_range(name, ends) for name, ends in {**require_table(box, "diff: box"), **ranges}.items()}
-    return compare_formulas(formulas_of(sides[0], known), formulas_of(sides[1], known))
+    return compare_formulas(*(formulas_of(text, kinds[0], known) for text in sides))
 
 
 def kind_of_text(text: str) -> str:
@@ -170,7 +169,7 @@ def kind_of_text(text: str) -> str:
 
     if text.endswith(".toml"):
         return "a claim file" if "claim" in read_toml(Path(text)) else "a model file"
-    if os.path.isdir(text):
+    if os.path.isdir(text):  # a long formula is no name of a file, which Path.is_dir does not bear
         return "a folder"
     if text.endswith(".json"):
         return LEDGER
@@ -329,16 +328,14 @@ def random_in(s: sp.Symbol, box: Mapping[Any, Any], generator: random.Random) ->
     return high if limits.open_lower and share == 0 else value
 
 
-def formulas_of(text: str, ranges: Mapping[str, tuple[Any, Any]]) -> dict[str, Formula]:
+def formulas_of(text: str, kind: str, ranges: Mapping[str, tuple[Any, Any]]) -> dict[str, Formula]:
     """Formulas of an argument: an export's folder, a claim or model file, or the text of one formula.
 
     ranges : name -> (lower, upper), exact; symbols without a range are real
     Raises DomainError for a folder that is no export, and the errors of the readers of files and expressions.
     """
-    if os.path.isdir(text):  # a long formula is no name of a file, which Path.is_dir does not bear
-        return of_export(Path(text))
-    if text.endswith(".toml"):
-        return of_file(Path(text))
+    if kind in READERS:
+        return READERS[kind](Path(text))
     return {"formula": of_claim(text) if ":" in text else of_text(text, ranges)}
 
 
@@ -373,15 +370,10 @@ def noted_in(text: Any) -> Noted:
 
 
 def of_file(path: Path) -> dict[str, Formula]:
-    """Claims of a claim file, or the entries of a model's F and H."""
-    from navsym.language.tomlfile import read_toml
-
-    document = read_toml(path)
-    if "claim" in document:
-        file = claims_from(document, str(path), go_on=True)
-        unread = {c.id: Formula(c.id, sp.S.Zero, {}, unread=str(c.error)) for c in file.undefined}
-        return {name: found for c in file.claims for name, found in entries_by_place(c).items()} | unread
-    return of_model(path)
+    """Claims of a claim file."""
+    file = read_claims(path, go_on=True)
+    unread = {c.id: Formula(c.id, sp.S.Zero, {}, unread=str(c.error)) for c in file.undefined}
+    return {name: found for c in file.claims for name, found in entries_by_place(c).items()} | unread
 
 
 def entries_by_place(claim: FileClaim | TextClaim) -> dict[str, Formula]:
@@ -463,3 +455,6 @@ def exact_ends(record: Mapping[str, Any]) -> tuple[Any, Any]:
     """Accepted range of an input as exact numbers."""
     ends = (record["low"], record["high"])
     return tuple(None if e is None else sp.Rational(*float(e).as_integer_ratio()) for e in ends)  # type: ignore[return-value]
+
+
+READERS = {"a claim file": of_file, "a model file": of_model, "a folder": of_export}

@@ -6,7 +6,7 @@ A claim that does not hold is refused here, and nowhere later; a refuted one nam
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from itertools import pairwise
 from typing import Any
@@ -100,13 +100,9 @@ def material(
     words = {"title": title, "paper": paper, "equation": equation, "formula": formula_lines(results)}
     source = Source.of(verdict, claim=claim, **words)
     box = statement.box if isinstance(statement, (Equation, Optimum)) else {}
-    return Material(claim, results, with_ends(box, claim.partition(":")[0]), source)
-
-
-def with_ends(box: Mapping[Any, Any], paper: str) -> Mapping[Any, Any]:
-    """The box of a claim; a range without an end gets the one that code for this paper has."""
-    ends = LAST.get(paper, {})
-    return {s: (r[0], ends[s.name]) if s.name in ends and r[1] is None else r for s, r in box.items()}
+    last = LAST.get(claim.partition(":")[0], {})
+    ends = {s: (low, last.get(s.name) if high is None else high) for s, (low, high) in box.items()}
+    return Material(claim, results, ends, source)
 
 
 def formula_lines(results: Sequence[tuple[Output, Sequence[sp.Expr]]]) -> tuple[str, ...]:

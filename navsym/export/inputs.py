@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -20,18 +19,14 @@ LARGE = 1000.0  # the end of a range that has none, for vectors and bounds
 
 
 def inputs_of(
-    symbols: Sequence[sp.Symbol],
-    box: Mapping[Any, Any],
-    real: str,
-    layout: Layout = Layout(),  # noqa: B008 - frozen
-    outputs: Sequence[str] = (),
+    symbols: Sequence[sp.Symbol], box: Mapping[Any, Any], real: str, layout: Layout, outputs: Sequence[str]
 ) -> tuple[Input, ...]:
     """Inputs in the order of the layout, then of the alphabet, with ranges rounded into the proved ones."""
     made: list[Input] = []
     taken = ["value", "weights", "instants", "dual", *outputs, *layout.arrays]
     for symbol in in_layout(symbols, layout):
         name = identifier(symbol.name[:LONGEST], [*(i.name for i in made), *taken])
-        made.append(with_layout(input_of(symbol, name, box, real), layout, real))
+        made.append(input_of(symbol, name, box, real, layout))
     return tuple(made)
 
 
@@ -51,26 +46,6 @@ def in_layout(symbols: Sequence[sp.Symbol], layout: Layout) -> list[sp.Symbol]:
     return sorted(symbols, key=lambda s: (place.get(s.name, len(place)), s.name.lower(), s.name))
 
 
-def with_layout(made: Input, layout: Layout, real: str = "double") -> Input:
-    """The input with its unit, and with the narrower range of its vectors, whose ends are numbers of the type."""
-    array = next((a for a, entries in layout.arrays.items() if made.symbol.name in entries), "")
-    unit = layout.units.get(made.symbol.name) or layout.units.get(array, "")
-    low, high = layout.tests.get(made.symbol.name) or layout.tests.get(array, (made.test_low, made.test_high))
-    low, high = inner(max(low, made.low), 1, real), inner(min(high, made.high), -1, real)
-    around = f"{made.around}, {{0}} whole" if made.symbol.name in layout.whole else made.around
-    return replace(made, unit=unit, test_low=low, test_high=high, around=around)
-
-
-def inner(end: float, direction: int, real: str) -> float:
-    """The end itself, or the ``float`` next to it on its inner side (1: above, -1: below)."""
-    if real == "double":
-        return end
-    value = np.float32(end)
-    if direction * (float(value) - end) < 0:
-        value = np.nextafter(value, np.float32(direction * np.inf))
-    return float(value)
-
-
 def arguments_of(inputs: Sequence[Input], layout: Layout) -> tuple[Argument, ...]:
     """Arrays of the layout as arguments, where all of their entries are inputs; other inputs by themselves."""
     first = {entries[0]: (name, len(entries)) for name, entries in layout.arrays.items()}
@@ -84,8 +59,8 @@ def arguments_of(inputs: Sequence[Input], layout: Layout) -> tuple[Argument, ...
     return tuple(found)
 
 
-def input_of(symbol: sp.Symbol, name: str, box: Mapping[Any, Any], real: str) -> Input:
-    """One argument: accepted range, and the range in which vectors and bounds live."""
+def input_of(symbol: sp.Symbol, name: str, box: Mapping[Any, Any], real: str, layout: Layout) -> Input:
+    """One argument: its unit, its accepted range, and the range of vectors and bounds, whose ends are of the type."""
     limits = range_of(symbol, box)
     low = -np.inf if limits.lower is None else inside(limits.lower, 1, real)
     high = np.inf if limits.upper is None else inside(limits.upper, -1, real)
@@ -93,7 +68,13 @@ def input_of(symbol: sp.Symbol, name: str, box: Mapping[Any, Any], real: str) ->
     test_low = low if np.isfinite(low) else -max(LARGE, 2 * abs(high)) if np.isfinite(high) else -LARGE
     if limits.open_lower and low == 0.0:
         test_low = low = SMALLEST[real]
-    return Input(symbol, name, float(low), float(high), float(test_low), float(test_high), around(limits))
+    array = next((a for a, entries in layout.arrays.items() if symbol.name in entries), "")
+    wanted = layout.tests.get(symbol.name) or layout.tests.get(array, (test_low, test_high))
+    first, last = max(wanted[0], low), min(wanted[1], high)
+    tests = inside(sp.Rational(first), 1, real), inside(sp.Rational(last), -1, real)
+    words = around(limits) + ", {0} whole" * (symbol.name in layout.whole)
+    unit = layout.units.get(symbol.name) or layout.units.get(array, "")
+    return Input(symbol, name, float(low), float(high), *tests, words, unit)
 
 
 def around(limits: Range) -> str:

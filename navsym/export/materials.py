@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import difflib
 import itertools
 import re
 from collections.abc import Mapping, Sequence
@@ -16,9 +15,10 @@ import sympy as sp
 from navsym.audit.answer import Audit, AuditedQuestion, audit_specification
 from navsym.audit.names import squeeze
 from navsym.book.entries import Entry, book
-from navsym.claims import CERTIFIED, OPEN, PROVED, Claim, Equation, Record, Verdict, Verdicts, equation_of
+from navsym.claims import CERTIFIED, OPEN, PROVED, Claim, Equation, Paper, Record, Verdict, equation_of
 from navsym.conventions.converting import Conversion
-from navsym.core.errors import DomainError, NavsymError
+from navsym.core.choice import one_of
+from navsym.core.errors import DomainError
 from navsym.core.sandbox import Exhausted, run_limited
 from navsym.export.accuracy.continuation import horner
 from navsym.export.algorithms.models import functions_of_model, matrix_function, plain_name, require_ranges
@@ -43,7 +43,7 @@ from navsym.prove.ladder import leave_open
 from navsym.prove.relations.judge import TextClaim
 from navsym.prove.wording import expression_text
 from navsym.verification.decide import decide_or_grant
-from navsym.verification.papers import file_of_source, is_model, load_papers, split_id
+from navsym.verification.papers import file_of_source, find_claim, is_model, load_papers, split_id
 
 SECONDS = 90.0
 MEGABYTES = 4096
@@ -60,9 +60,6 @@ def functions_from(
            name, record, claim or entry; a verdict with its formula; estimator, phases, derivation, model or model file
     """
     units = units or {}
-    if isinstance(item, (list, tuple, Verdicts)):
-        parts = [functions_from(i, real=real, allow_confirmed=allow_confirmed, units=units) for i in item]
-        return [function for part in parts for function in part]
     if isinstance(item, Entry):
         item = f"book:{item.id}"
     if isinstance(item, str):
@@ -105,9 +102,9 @@ def functions_of_claim(text: str, real: str, allow_confirmed: bool, units: Mappi
     if module.endswith(".toml") and is_model(file := file_of_source(module)):
         return functions_of_target(file, target, real, units)
     if module.endswith(".toml") and "question" in read_toml(file := file_of_source(module)):
+        if target:
+            one_of(target, [question["name"] for question in read_toml(file)["question"]], file.name)
         asked = audit_specification(file, target or None).questions
-        if not asked:
-            raise unknown_claim(target, [q["name"] for q in read_toml(file)["question"]], file.name)
         return [function_of_question(question, file.stem, real, units) for question in asked]
     parts = [material_of_claim(part, allow_confirmed) for part in split_regimes(claims)]
     known = {**units_of_paper(claims.partition(":")[0]), **units}
@@ -128,50 +125,38 @@ def split_regimes(text: str) -> list[str]:
 
 def material_of_claim(text: str, allow_confirmed: bool) -> Material:
     """A claim of a paper or of a file, decided."""
-    module, colon, number = split_id(text) if ".toml:" in text else text.rpartition(":")
-    if not colon or not module or not number:
+    module, _, number = split_id(text)
+    if not module or not number:
         message = f"expected MODULE:NUMBER or FILE.toml:ID; got {text[:80]!r}; correct it"
         raise DomainError(message, where="claim")
-    if module.endswith(".toml"):
-        return material_from_file(module, number, allow_confirmed)
     if module == "book":
         return material_of_verdict(book[number].prove(), allow_confirmed)
-    return material_from_paper(module, number, allow_confirmed)
+    paper, claim = find_claim(text)
+    better = paper.correction_of(claim.id)
+    correction = None if better is None else better.id
+    if module.endswith(".toml"):
+        return material_from_file(file_of_source(module), number, correction, allow_confirmed)
+    return material_from_paper(paper.paper, claim, correction, allow_confirmed)
 
 
-def material_from_paper(module: str, number: str, allow_confirmed: bool) -> Material:
+def material_from_paper(card: Paper, claim: Claim, correction: str | None, allow_confirmed: bool) -> Material:
     """A claim of a paper with its verdict; raises RefusedError, with the claim that corrects it, when it is refuted."""
-    (paper,) = load_papers([module])
-    by_number = {claim.number: claim for claim in paper.claims}
-    if number not in by_number:
-        raise unknown_claim(number, list(by_number), module)
-    claim, card = by_number[number], paper.paper
-    statement = claim.derive()
-    corrections = [c.id for c in paper.claims if c.corrects == number]
-    equation = equation_of(number, card.equations)
+    statement, equation = claim.derive(), equation_of(claim.number, card.equations)
     return material(
         claim.id,
         statement,
         decide_or_grant(statement, SECONDS),
         title=claim.title,
         paper=", ".join([*card.authors, card.title, str(card.year or "")]).strip(", "),
-        equation=f"equation ({equation})" if equation else f"statement {number}",
-        correction=corrections[0] if corrections else None,
+        equation=f"equation ({equation})" if equation else f"statement {claim.number}",
+        correction=correction,
         allow_confirmed=allow_confirmed,
     )
 
 
-def material_from_file(name: str, wanted: str, allow_confirmed: bool) -> Material:
+def material_from_file(path: Path, wanted: str, correction: str | None, allow_confirmed: bool) -> Material:
     """A claim of a claim file, decided now."""
-    path = file_of_source(name)
-    file = read_claims(path, go_on=True)
-    for unreadable in file.undefined:
-        if unreadable.id == wanted:
-            raise unreadable.error
-    claims = {claim.id: claim for claim in file.claims}
-    if wanted not in claims:
-        raise unknown_claim(wanted, list(claims), path.name)
-    claim = claims[wanted]
+    claim = next(claim for claim in read_claims(path, go_on=True).claims if claim.id == wanted)
     outcome = run_limited(decide_claim, (claim,), SECONDS, MEGABYTES)
     verdict = leave_open(outcome) if isinstance(outcome, Exhausted) else outcome
     return material_of(
@@ -181,7 +166,7 @@ def material_from_file(name: str, wanted: str, allow_confirmed: bool) -> Materia
         title=claim.notes.get("title", str(claim.formula)),
         equation=f"claim {wanted}",
         paper=path.name,
-        correction=next((f"{name}:{c.id}" for c in claims.values() if c.notes.get("corrects") == wanted), None),
+        correction=correction,
         allow_confirmed=allow_confirmed,
     )
 
@@ -278,13 +263,6 @@ def functions_of_conversion(found: Conversion, real: str, units: Mapping[str, st
         box = {s: ends for s, ends in known.items() if s in matrix.free_symbols}
         result.append(matrix_function(label, matrix, None, title, real, Layout(units=units), box))
     return result
-
-
-def unknown_claim(name: str, known: list[str], where: str) -> NavsymError:
-    """The error for a claim that a paper or file does not have, with the closest one that it has."""
-    close = difflib.get_close_matches(name, known, n=1)
-    advice = f"did you mean {close[0]}?" if close else f"known are {', '.join(known[:8])}"
-    return DomainError(f"expected a claim of {where}; got {name[:60]}; {advice}", where="claim")
 
 
 # Answers of the front door

@@ -8,7 +8,7 @@ import platform
 import shlex
 import tempfile
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import asdict, dataclass
+from dataclasses import dataclass
 from functools import cache
 from importlib.metadata import version
 from pathlib import Path
@@ -20,7 +20,7 @@ from navsym.core.errors import DomainError, DuplicateError, NavsymError
 from navsym.export.accuracy.vectors import Vector, vectors
 from navsym.export.folder import require_free, write_folder
 from navsym.export.functions import rebounded
-from navsym.export.languages.summary import bound_text, state_record
+from navsym.export.languages.summary import bound_text, function_record
 from navsym.export.languages.targets import Target
 from navsym.export.parts import ExportedFunction, Piece
 from navsym.export.roundtrip import MANIFEST, Outcome, run_target, sealed
@@ -123,39 +123,6 @@ def manifest(
         "languages": [target.name for target in order.targets],
         "functions": functions,
         "files": {name: hashlib.sha256(text.encode()).hexdigest() for name, text in sorted(files.items())},
-    }
-
-
-def function_record(function: ExportedFunction) -> dict[str, Any]:
-    """A function for the manifest: inputs with ranges, arguments, outputs, state and pieces."""
-    return {
-        "name": function.name,
-        "inputs": [
-            {"name": i.name, "symbol": i.symbol.name, "range": i.text, "unit": i.unit or None} | ends(i.low, i.high)
-            for i in function.inputs
-        ],
-        "arguments": [{"name": a.name, "inputs": [a.first, a.size or 1]} for a in function.called_with],
-        "outputs": [{"name": o.name, "shape": list(o.shape), "unit": o.unit or None} for o in function.outputs],
-        "state": state_record(function),
-        "pieces": [piece_record(function, piece) for piece in function.pieces],
-    }
-
-
-def ends(low: float, high: float) -> dict[str, float | None]:
-    """Accepted range; null where it has no end."""
-    infinite = float("inf")
-    return {"low": None if low == -infinite else low, "high": None if high == infinite else high}
-
-
-def piece_record(function: ExportedFunction, piece: Piece) -> dict[str, Any]:
-    """A piece for the manifest: where it ends, its source without the certificate, operations, rounding bound."""
-    source = {k: v for k, v in asdict(piece.source).items() if k != "certificate"}
-    return {
-        "up_to": piece.limit,
-        "source": source,
-        "operations": dict(sorted(piece.graph.operations().items())),
-        "rounding": bound_text(function, piece),
-        "tie": piece.tie,
     }
 
 

@@ -18,7 +18,7 @@ from typing import Any
 
 from navsym.claims.display import count_in_words
 from navsym.export.folder import is_plain
-from navsym.export.languages.targets import SANITIZERS, TARGETS, WORDS, Target
+from navsym.export.languages.targets import TARGETS, WORDS, Target
 from navsym.export.processes import run
 from navsym.export.tools import misra
 
@@ -40,7 +40,7 @@ class Outcome:
     functions: dict[str, tuple[int, int, float]]
 
 
-def run_target(folder: Path, target: Target, *, sanitize: bool = False) -> Outcome:
+def run_target(folder: Path, target: Target) -> Outcome:
     """Build and run the vectors of one language's folder; the build goes to a temporary folder."""
     tool = target.executable()
     if tool is None:
@@ -49,7 +49,7 @@ def run_target(folder: Path, target: Target, *, sanitize: bool = False) -> Outco
         )
     text = ""
     with tempfile.TemporaryDirectory(prefix="navsym-run-") as build:
-        for step in steps_of(target, folder, tool, build, sanitize):
+        for step in steps_of(target, folder, tool, build):
             done, text = run(step, folder)
             if done != 0:
                 return Outcome(target.name, "failed", words(text) or f"exit status {done}", measured(text))
@@ -60,20 +60,18 @@ def run_target(folder: Path, target: Target, *, sanitize: bool = False) -> Outco
     return Outcome(target.name, "failed" if wrong else "verified", words(text) if wrong else "", found)
 
 
-def steps_of(target: Target, folder: Path, tool: str, build: str, sanitize: bool) -> list[list[str]]:
+def steps_of(target: Target, folder: Path, tool: str, build: str) -> list[list[str]]:
     """The commands with their places filled in."""
     table = WORDS | {
         "{tool}": [tool],
         "{python}": [sys.executable],
         "{c}": [p.name for p in sorted(folder.glob("*.c"))],
     }
-    made = []
-    for step in target.steps:
-        command = [w for word in step.split() for w in table.get(word, [word.replace("{build}", build)])]
-        if sanitize and target.name in ("c", "cpp") and command[0] == tool:
-            command[1:1] = SANITIZERS
-        made.append(command)
-    return made
+
+    def fill(word: str) -> Sequence[str]:
+        return table.get(word, [word.replace("{build}", build)])
+
+    return [[part for word in step.split() for part in fill(word)] for step in target.steps]
 
 
 def measured(text: str) -> dict[str, tuple[int, int, float]]:

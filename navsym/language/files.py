@@ -98,6 +98,15 @@ def not_text(got: str, where: str) -> NavsymError:
     return ExpressionSyntaxError(f"expected plain UTF-8 text; got {got}; save it as UTF-8", where=where)
 
 
+def make_folder(path: Path, remedy: str) -> None:
+    """Make a folder where there is none; raises OutputError with the remedy where it cannot be made."""
+    try:
+        path.mkdir(parents=True, exist_ok=True)
+    except OSError as error:
+        message = f"expected a folder that can be made; got '{error.strerror}'; {remedy}"
+        raise OutputError(message, where=str(path)) from error
+
+
 def write_text(path: str | os.PathLike[str], text: str, *, durable: bool = True) -> None:
     """Write a file whole or not at all: temporary file beside it, fsync, rename.
 

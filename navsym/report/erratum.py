@@ -13,7 +13,7 @@ from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 
 from navsym.claims import Paper, Record, equation_of
-from navsym.report.explain import arithmetic, ball_words, ended
+from navsym.report.explain import arithmetic, ended, number_words
 from navsym.report.formula.sides import Formula, as_printed, coordinates, formula, only_truth
 from navsym.report.wording import Wording, Words, pattern_of
 
@@ -71,11 +71,6 @@ class Erratum:
 
     paper: Paper
     entries: tuple[Entry, ...]
-
-    @property
-    def is_of_file(self) -> bool:
-        """True for a claim file, whose corrections are decided and not derived."""
-        return is_file(self.paper.module)
 
     def of(self, slip: str) -> tuple[Entry, ...]:
         """Slips of the paper itself, of the scan that was read, or "undecidable" between the two."""
@@ -192,5 +187,5 @@ def check_of(record: Record) -> Check | None:
     line = next((line for line in arithmetic(record) if line.differs), None)
     if line is None or len(point) > MOST_COORDINATES or (not point and line.entry):
         return None
-    printed, derived = ball_words(line.printed), ball_words(line.derived)
+    printed, derived = number_words(line.printed), number_words(line.derived)
     return Check(coordinates(point), line.entry, printed, derived, whole=not record.derived or is_file(record.paper))

@@ -6,13 +6,16 @@ Everything is read off the record of ``navsym verify``; nothing is decided here.
 from __future__ import annotations
 
 import contextlib
+import functools
 import html
 import inspect
 import re
 import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass
-from decimal import Decimal, InvalidOperation
+from decimal import Decimal
+from fractions import Fraction
+from itertools import takewhile
 from pathlib import Path
 from typing import Any
 
@@ -21,8 +24,9 @@ from navsym.claims.display import mark_verdict, write_card
 from navsym.claims.paper import papers_folder
 from navsym.claims.workspace import find_workspace
 from navsym.core.answers import Answer, named
-from navsym.core.balls import enclose, tape
+from navsym.core.balls import Tape, enclose, tape
 from navsym.core.errors import NavsymError
+from navsym.core.numbers import Number
 from navsym.language.expression import parse, symbol
 from navsym.language.names import RESERVED
 from navsym.prove.wording import decimal_ends
@@ -132,27 +136,47 @@ def formula_of(claim: Claim) -> str | None:
 
 LONGEST = 20_000
 NAME = re.compile(r"[A-Za-z][A-Za-z0-9_]*")
+SURE = 12  # digits of an enclosure around a rounded number that is shown without its ends
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, eq=False)
+class Side:
+    """One entry of a side of a claim, ready to be evaluated."""
+
+    program: Tape
+    names: frozenset[str]
+
+    def at(self, point: Mapping[str, Any]) -> Any:
+        """A ball that holds the value at a point; not finite where there is none."""
+        return enclose(self.program, {symbol(name): value for name, value in point.items()})
+
+
+@functools.lru_cache(maxsize=1024)
+def read_side(text: str) -> Side:
+    """An entry from its text; raises NavsymError for text outside the language."""
+    expression = parse(text, {name: symbol(name) for name in NAME.findall(text) if name not in RESERVED})
+    return Side(tape(expression), frozenset(s.name for s in expression.free_symbols))
+
+
+@dataclass(frozen=True, slots=True, eq=False)
 class Arithmetic:
-    """Both sides of one entry at the counterexample, as decimals that enclose them from below and above."""
+    """Both sides of one entry, and their values at the counterexample."""
 
     entry: int
-    printed: tuple[str, str]
-    derived: tuple[str, str]
+    sides: tuple[Side, Side]
+    printed: Number
+    derived: Number
 
     @property
     def differs(self) -> bool:
         """True when the two sides are apart: no number lies in both enclosures."""
-        (low, high), (least, most) = (map(Decimal, ends) for ends in (self.printed, self.derived))
-        return high < least or most < low
+        low, high = Fraction(self.printed.lower), Fraction(self.printed.upper)
+        return high < Fraction(self.derived.lower) or Fraction(self.derived.upper) < low
 
 
 def arithmetic(record: Record) -> list[Arithmetic]:
     """Values of both sides at the counterexample, for the entries that are numbers there."""
-    point = record.counterexample
-    if point is None:
+    if record.counterexample is None:
         return []
     left, right = record.printed.split(" +- ")[0], record.derived
     if not right and left.count(" = ") == 1:  # a whole equation was stated
@@ -164,26 +188,19 @@ def arithmetic(record: Record) -> list[Arithmetic]:
     for place, pair in enumerate(zip(printed, derived, strict=True), start=1):
         with contextlib.suppress(NavsymError, ValueError, ArithmeticError, TypeError):
             if pair[0] != pair[1]:
-                found.append(Arithmetic(0 if single else place, *(value_at(side, point) for side in pair)))
+                point = {name: read_side(value).at({}) for name, value in record.counterexample.items()}
+                sides = read_side(pair[0]), read_side(pair[1])
+                values = (value_at(side, point) for side in sides)
+                found.append(Arithmetic(0 if single else place, sides, *values))
     return found
 
 
-def value_at(text: str, point: Mapping[str, str]) -> tuple[str, str]:
-    """Decimals below and above the value of an expression at a point.
-
-    Raises NavsymError for text outside the language, ValueError where the value is not finite.
-    """
-    names = sorted({name for name in NAME.findall(text) if name not in RESERVED} | set(point))
-    symbols = {name: symbol(name) for name in names}
-    expression = parse(text, symbols)
-    if expression.free_symbols - {symbols[name] for name in point}:
-        raise ValueError(f"{text[:40]} is not a number there")
-    at = {symbols[name]: enclose(tape(parse(value, {}))) for name, value in point.items()}
-    ball = enclose(tape(expression), at)
-    if not ball.is_finite():
-        raise ValueError(f"{text[:40]} is not finite there")
-    ends = decimal_ends(ball)
-    return ends.lower, ends.upper
+def value_at(side: Side, point: Mapping[str, Any]) -> Number:
+    """Decimals below and above the value of a side at a point; raises ValueError where it is no finite number."""
+    ball = side.at(point) if side.names <= point.keys() else None
+    if ball is None or not ball.is_finite():
+        raise ValueError("expected a finite number")
+    return decimal_ends(ball)
 
 
 def entries_of(text: str) -> list[str]:
@@ -212,29 +229,16 @@ def ended(sentence: str) -> str:
     return sentence if sentence.endswith(("…", ".")) else sentence + "."
 
 
-def ball_words(ends: tuple[str, str]) -> str:
+def number_words(value: Number) -> str:
     """``0.95885…`` for ends that agree so far, ``0.995`` for ends on both sides of it; both ends otherwise."""
-    low, high = ends
+    low, high = value.lower, value.upper
     if low == high:
         return low.rstrip("0").rstrip(".") if "." in low else low
-    if (rounded := common_rounding(low, high)) is not None:
-        return rounded
-    same = next((i for i, (a, b) in enumerate(zip(low, high, strict=False)) if a != b), min(len(low), len(high)))
-    shared = low[:same]
+    near = format(Decimal(f"{(Decimal(low) + Decimal(high)) / 2:.8g}").normalize(), "f")
+    if value.digits >= SURE and Fraction(near) in value:
+        return near
+    shared = "".join(a for a, _ in takewhile(lambda pair: pair[0] == pair[1], zip(low, high, strict=False)))
     return f"{shared[:14]}…" if "." in shared and len(shared) > 6 else f"between {low} and {high}"
-
-
-def common_rounding(low: str, high: str) -> str | None:
-    """The number of at most eight digits between two ends that are nearer than that; None where there is none."""
-    try:
-        first, second = (Decimal(end) for end in (low, high))
-        middle = Decimal(f"{(first + second) / 2:.8g}")
-    except InvalidOperation:
-        return None
-    if not first <= middle <= second or second - first > abs(middle) * Decimal("1e-12"):
-        return None
-    plain = format(middle.normalize(), "f")
-    return plain if len(plain) < 16 else format(middle.normalize(), "E")
 
 
 @dataclass(frozen=True, slots=True)
@@ -322,11 +326,11 @@ def counterexample_steps(record: Record) -> list[Step]:
         if line.differs:
             start = f"Entry {line.entry}: the" if line.entry else "The"
             first, second = ("printed", "derived") if record.derived else ("left", "right")
-            printed, derived = ball_words(line.printed), ball_words(line.derived)
+            printed, derived = number_words(line.printed), number_words(line.derived)
             found.append(Step("", ended(f"{start} {first} side is {printed}, the {second} side is {derived}")))
     if record.difference:
         low, high = record.difference.lower, record.difference.upper
-        value = f"is {ball_words((low, high))}" if low == high else f"lies between {low} and {high}"
+        value = f"is {number_words(record.difference)}" if low == high else f"lies between {low} and {high}"
         found.append(Step("", f"The side on the left minus the other {value}: not zero."))
     return found
 

@@ -23,12 +23,12 @@ from markupsafe import Markup
 from navsym.claims import Paper, Record, equation_of
 from navsym.claims.display import MARKS as MARKS
 from navsym.report.erratum import Erratum, erratum_of, printed_side
-from navsym.report.explain import WORDS, Step, ball_words, ended, steps
+from navsym.report.explain import WORDS, ended, number_words, steps
 from navsym.report.formula.latex import sentence_html, sentence_latex
 from navsym.report.formula.sides import Formula, as_printed, coordinates, formula, only_truth
 from navsym.report.names import latex_escape
 from navsym.report.plots import refutation_svg
-from navsym.report.trust import backing_words, trust_of
+from navsym.report.trust import backing_words, count_certificates
 from navsym.report.wording import Words
 from navsym.verification.certificates import list_parts
 from navsym.verification.ledger import Ledger, may_be_the_copy, records_about, sort_records
@@ -91,23 +91,6 @@ COPY_MARK = "copy"  # a word: no sign says it
 
 
 @dataclass(frozen=True, slots=True)
-class ClaimView:
-    """A record with everything that its card shows."""
-
-    record: Record
-    source: Formula | None
-    printed: Formula
-    derived: Formula
-    story: tuple[tuple[Step, Formula | None], ...]
-    plot: Markup
-    point: tuple[Formula, ...]
-    correction: Record | None
-    corrects: Record | None
-    certificates: tuple[str, ...]
-    backing: str
-
-
-@dataclass(frozen=True, slots=True)
 class Cell:
     """One equation of the matrix: what it is worth and where it is told."""
 
@@ -125,7 +108,7 @@ class PaperView:
     card: Paper
     file: str
     cells: tuple[Cell, ...]
-    claims: tuple[ClaimView, ...]
+    records: tuple[Record, ...]
     counts: Mapping[str, int]
     damaged: int
     unnumbered: int
@@ -153,7 +136,7 @@ def pages(
     ``.tex``, ``MODEL.conventions.html``, ``trust.html``, ``index.html``.
     """
     words, env, papers = words or {}, environment(), []
-    shared = {"marks": MARKS, "meanings": WORDS["meaning"], "copy_mark": COPY_MARK}
+    shared: dict[str, Any] = {"marks": MARKS, "meanings": WORDS["meaning"], "copy_mark": COPY_MARK}
     shared |= {"kinds": WORDS["side"], "whose": WORDS["card_slip"]}
     for record in ledger.claims:  # as navsym check reads them
         for name, part in certificates_by_file(record):
@@ -162,15 +145,15 @@ def pages(
     for summary in ledger.papers:
         bare = Paper(summary.module, summary.title, authors=(), year=None, source="", language="", equations=())
         card = ledger.cards.get(summary.module) or bare
-        paper = paper_view(card, ledger.claims, words.get(summary.module), progress)
+        paper = paper_view(card, ledger.claims, words.get(summary.module))
         papers.append(paper)
-        yield f"{paper.file}.html", env.get_template("paper.html").render(shared, paper=paper)
+        given = {"known": {r.id: r for r in paper.records}, "corrections": {r.corrects: r for r in paper.records}}
+        given |= {"paper": paper, "records": followed(paper.records, progress)}
+        yield f"{paper.file}.html", env.get_template("paper.html").render(shared | given)
         yield f"{paper.file}.erratum.html", env.get_template("erratum.html").render(shared, paper=paper)
         yield f"{paper.file}.erratum.tex", env.get_template("erratum.tex").render(paper=paper)
-    places = {
-        claim.record.id: f"{paper.file}.html#{anchor_of(claim.record)}" for paper in papers for claim in paper.claims
-    }
-    yield "trust.html", env.get_template("trust.html").render(shared, trust=trust_of(ledger), places=places)
+    places = {record.id: f"{paper.file}.html#{anchor_of(record)}" for paper in papers for record in paper.records}
+    yield "trust.html", env.get_template("trust.html").render(shared, trust=count_certificates(ledger), places=places)
     if book:
         from navsym.report.atlas_page import atlas_pages
         from navsym.report.book_pages import book_pages
@@ -200,7 +183,8 @@ def environment() -> jinja2.Environment:
     )
     env.filters |= {"tex": latex_escape, "slug": slug, "sentence": sentence_html, "sentence_tex": sentence_latex}
     env.filters |= {"ended": ended, "in_words": scope_words, "anchor": anchor_of, "printed": printed_side}
-    env.filters["ends"] = lambda difference: ball_words((difference.lower, difference.upper))
+    env.filters |= {"ends": number_words, "side": side, "steps": steps, "plot": plot_of, "coordinates": coordinates}
+    env.filters |= {"formula": formula, "source": as_printed, "backing": backing_words, "files": certificate_files}
     script = (TEMPLATES / "filter.js").read_text(encoding="utf-8").strip()
     env.globals["style"] = Markup((TEMPLATES / "style.css").read_text(encoding="utf-8"))
     env.globals["script"] = Markup(script)
@@ -215,9 +199,7 @@ def visible(value: Any) -> Any:
     return "".join(c if c.isprintable() or c in "\n\t" else repr(c)[1:-1] for c in value)
 
 
-def paper_view(
-    card: Paper, records: Sequence[Record], words: Words | None, progress: Callable[[str], None]
-) -> PaperView:
+def paper_view(card: Paper, records: Sequence[Record], words: Words | None) -> PaperView:
     """Everything that the page of one paper shows."""
     mine = sort_records(card, [record for record in records if record.paper == card.module])
     statuses = [str(record.status) for record in mine]
@@ -226,7 +208,7 @@ def paper_view(
         card=card,
         file=slug(card.module),
         cells=tuple(equation_cell(card, equation, mine) for equation in card.equations),
-        claims=tuple(claim_views(mine, progress)),
+        records=tuple(mine),
         counts={status: statuses.count(status) for status in MARKS},
         damaged=sum(may_be_the_copy(record) for record in mine),
         unnumbered=numbered.count(None),
@@ -257,25 +239,21 @@ def anchor_of(record: Record) -> str:
     return f"c-{slug(record.number)}"
 
 
-def claim_views(records: Sequence[Record], progress: Callable[[str], None]) -> Iterator[ClaimView]:
-    """What the page of a paper shows of its claims, one after the other; progress gets the id of each."""
-    known = {record.id: record for record in records}
-    corrections = {record.corrects: record for record in records if record.corrects}
+def followed(records: Sequence[Record], progress: Callable[[str], None]) -> Iterator[Record]:
+    """The records; progress gets the id of each when the page has it."""
     for record in records:
-        yield ClaimView(
-            record=record,
-            source=as_printed(record.latex),
-            printed=side(record.printed),
-            derived=side(record.derived),
-            story=tuple((step, formula(step.formula) if step.formula else None) for step in steps(record)),
-            plot=Markup(refutation_svg(record) if record.status == "REFUTED" else ""),
-            point=coordinates(record.counterexample),
-            correction=corrections.get(record.id),
-            corrects=known.get(record.corrects or ""),
-            certificates=tuple(name for name, _ in certificates_by_file(record)),
-            backing=backing_words(record),
-        )
+        yield record
         progress(record.id)
+
+
+def plot_of(record: Record) -> Markup:
+    """The picture of a refuted record; empty for others, and where there is no curve."""
+    return Markup(refutation_svg(record) if record.status == "REFUTED" else "")
+
+
+def certificate_files(record: Record) -> list[str]:
+    """Names of the files of its certificates."""
+    return [name for name, _ in certificates_by_file(record)]
 
 
 def side(text: str) -> Formula:

@@ -21,15 +21,15 @@ from matplotlib.figure import Figure
 from matplotlib.patches import Rectangle
 
 from navsym.claims import Record
-from navsym.core.balls import Tape, enclose, exact_ball, tape
+from navsym.core.balls import enclose, exact_ball, tape
 from navsym.core.errors import DomainError, NavsymError
 from navsym.guaranteed.phases.answer import PhaseMap, Phases, Regime
 from navsym.guaranteed.solver import Estimator
-from navsym.language.expression import parse, symbol, to_text
+from navsym.language.expression import to_text
 from navsym.language.names import quote
 from navsym.multimodel.engine import Estimates
 from navsym.observability.accuracy import Accuracy
-from navsym.report.explain import entries_of
+from navsym.report.explain import Side, arithmetic, read_side
 from navsym.report.names import latex_name
 from navsym.terrain.locate import Fix
 from navsym.trajectory.conditioning import Conditions
@@ -431,67 +431,27 @@ def refuted_curves(record: Record) -> RefutedCurves | None:
 
     For tuples and matrices the first entry that differs is drawn. Values are doubles: a picture, not a decision.
     """
-    point = {name: value_of(text) for name, text in (record.counterexample or {}).items()}
-    held = {name: number for name, number in point.items() if number is not None}
-    sides = differing_sides(record, held)
-    along = next((n for n in held if sides is not None and any(symbol(n) in s.symbols for s in sides)), None)
-    if sides is None or along is None or len(held) < len(point):
+    line = next((line for line in arithmetic(record) if line.differs), None) if record.derived else None
+    texts = record.counterexample or {}
+    along = next((n for n in texts if line is not None and any(n in side.names for side in line.sides)), None)
+    if line is None or along is None:
         return None
-    centre = held[along]
-    lower, upper = sorted((0.02 * centre, 2 * centre)) if centre else (-1.0, 1.0)
+    held = {name: height(read_side(text), {}) for name, text in texts.items()}
+    lower, upper = sorted((0.02 * held[along], 2 * held[along])) if held[along] else (-1.0, 1.0)
     x = np.linspace(lower, upper, POINTS + 1)
-    curves = tuple(np.array([side.at({**held, along: float(value)}) for value in x]) for side in sides)
-    marks = tuple(side.at(held) for side in sides)
-    if any(np.isfinite(y).sum() < POINTS // 4 for y in curves) or not all(np.isfinite(marks)):
+    curves = tuple(np.array([height(side, held | {along: float(value)}) for value in x]) for side in line.sides)
+    marks = tuple(height(side, held) for side in line.sides)
+    if any(np.isfinite(y).sum() < POINTS // 4 for y in curves) or not all(np.isfinite((*marks, *held.values()))):
         return None
     names = ("one side", "other side") if record.paper.endswith(".toml") else ("printed", "derived")
     return RefutedCurves(along, held, x, curves, marks, names)  # type: ignore[arg-type]
 
 
-@dataclass(frozen=True, slots=True, eq=False)
-class Side:
-    """One side of a formula, ready to be evaluated."""
-
-    program: Tape
-    symbols: frozenset[Any]
-
-    def at(self, point: Mapping[str, float]) -> float:
-        """The value at a point; NaN where there is none, or one of 1e12 and more."""
-        values = {symbol(name): exact_ball(Fraction(number)) for name, number in point.items()}
-        try:
-            ball = enclose(self.program, values)
-        except (NavsymError, ArithmeticError, ValueError):
-            return float("nan")
-        value = float(ball.mid()) if ball.is_finite() else float("nan")
-        return value if abs(value) < LARGEST else float("nan")
-
-
-def differing_sides(record: Record, point: Mapping[str, float]) -> tuple[Side, Side] | None:
-    """Printed and derived side of the first entry whose values differ at the point."""
-    printed, derived = (entries_of(text.split(" +- ")[0]) for text in (record.printed, record.derived))
-    if not derived or len(printed) != len(derived):
-        return None
-    for pair in zip(printed, derived, strict=True):
-        sides = [read_side(text, point) for text in pair]
-        if sides[0] is None or sides[1] is None:
-            return None
-        a, b = sides[0].at(point), sides[1].at(point)
-        if abs(a - b) > 1e-9 * (abs(a) + abs(b)):
-            return sides[0], sides[1]
-    return None
-
-
-def read_side(text: str, names: Mapping[str, Any]) -> Side | None:
-    """A side from its text; None for what is no formula in these names."""
+def height(side: Side, point: Mapping[str, float]) -> float:
+    """The value of a side at a point; NaN where there is none, or one of 1e12 and more."""
     try:
-        expression = parse(text, {name: symbol(name) for name in names})
-        return Side(tape(expression), frozenset(expression.free_symbols))
-    except NavsymError:
-        return None
-
-
-def value_of(text: str) -> float | None:
-    """The number that a text is, None when it is none."""
-    side = read_side(text, {})
-    value = float("nan") if side is None else side.at({})
-    return value if np.isfinite(value) else None
+        ball = side.at({name: exact_ball(Fraction(number)) for name, number in point.items()})
+    except (NavsymError, ArithmeticError, ValueError):
+        return np.nan
+    value = float(ball.mid()) if ball.is_finite() else np.nan
+    return value if abs(value) < LARGEST else np.nan

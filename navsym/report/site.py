@@ -13,8 +13,7 @@ from typing import Any
 from navsym.claims.paper import papers_folder
 from navsym.claims.workspace import find_workspace
 from navsym.core.answers import Answer
-from navsym.core.errors import OutputError
-from navsym.language.files import read_text, write_text
+from navsym.language.files import make_folder, read_text, write_text
 from navsym.language.tomlfile import read_toml
 from navsym.report.page import pages
 from navsym.report.wording import read_wording
@@ -83,7 +82,7 @@ def report(
     ledger = source if isinstance(source, Ledger) else None
     if source is not None and not isinstance(source, Ledger):
         ledger = read_ledger(source)
-    make_folder(folder)  # before minutes are spent on what cannot be written
+    make_folder(folder / "certificates", "choose another --out")  # before minutes are spent on what cannot be written
     run = partial(verify, jobs=jobs, seconds=seconds, fresh=fresh, progress=progress, remark=remark)
     if ledger is None:
         ledger = run(*papers)
@@ -104,15 +103,6 @@ def read_models() -> dict[str, Any]:
     names = [] if workspace is None else workspace.list_files("models")
     files = {name: workspace.root / name for name in names} if workspace else {}
     return {name: conventions(path) for name, path in files.items() if "roles" in read_toml(path)}
-
-
-def make_folder(out: Path) -> None:
-    """Make the folder of the pages and that of their certificates; raises OutputError where they cannot be made."""
-    try:
-        (out / "certificates").mkdir(parents=True, exist_ok=True)
-    except OSError as error:
-        message = f"expected a folder that can be made; got '{error.strerror}'; choose another --out"
-        raise OutputError(message, where=str(out)) from error
 
 
 def write_pages(out: Path, ledger: Ledger, progress: Callable[[int, int, str], None], *, book: bool = False) -> Site:

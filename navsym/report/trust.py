@@ -5,7 +5,6 @@ from __future__ import annotations
 import json
 from collections import Counter, defaultdict
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from pathlib import Path
 from statistics import median
 from typing import Any
@@ -16,8 +15,7 @@ from navsym.verification.certificates import JUDGES, list_parts, read_outcomes
 from navsym.verification.ledger import Ledger, Record
 
 
-@dataclass(frozen=True, slots=True)
-class Trust:
+def count_certificates(ledger: Ledger) -> dict[str, Any]:
     """What stands on the page.
 
     rows      : kinds of certificates, the most frequent first: how many, median and largest size in bytes
@@ -27,17 +25,6 @@ class Trust:
     lines     : of the checker
     judged    : what the second checker and Coq have said of all certificates
     """
-
-    rows: tuple[tuple[str, int, int, int], ...]
-    rules: tuple[tuple[str, int], ...]
-    unchecked: tuple[Record, ...]
-    sampled: tuple[Record, ...]
-    lines: int
-    judged: tuple[str, ...]
-
-
-def trust_of(ledger: Ledger) -> Trust:
-    """Counts of the certificates of a ledger, and what has none."""
     kinds, rules = defaultdict[str, list[int]](list), Counter[str]()
     certificates = [record.certificate for record in ledger.claims if record.certificate]
     parts = [part for certificate in certificates for part in list_parts(certificate)]
@@ -46,14 +33,14 @@ def trust_of(ledger: Ledger) -> Trust:
     for certificate in certificates:
         rules.update({*list_rules(certificate)})
     rows = [(kind, len(sizes), round(median(sizes)), max(sizes)) for kind, sizes in kinds.items()]
-    return Trust(
-        rows=tuple(sorted(rows, key=lambda row: (-row[1], row[0]))),
-        rules=tuple(sorted(rules.items(), key=lambda item: (-item[1], item[0]))),
-        unchecked=ledger.unchecked,
-        sampled=tuple(record for record in ledger.claims if record.status in ("CONFIRMED", "OPEN")),
-        lines=len(Path(checker.__file__).read_text(encoding="utf-8").splitlines()),
-        judged=tuple(outcome_words(judge, parts) for judge in JUDGES),
-    )
+    return {
+        "rows": sorted(rows, key=lambda row: (-row[1], row[0])),
+        "rules": sorted(rules.items(), key=lambda item: (-item[1], item[0])),
+        "unchecked": ledger.unchecked,
+        "sampled": [record for record in ledger.claims if record.status in ("CONFIRMED", "OPEN")],
+        "lines": len(Path(checker.__file__).read_text(encoding="utf-8").splitlines()),
+        "judged": [outcome_words(judge, parts) for judge in JUDGES],
+    }
 
 
 def list_rules(value: Any) -> Iterator[str]:

@@ -20,13 +20,13 @@ VERB = '''
     """Count things that are there."""
     import os
     import typer
-    from navsym.cli.output import emit
+    from navsym.cli.output import Told
     from navsym.core.errors import MissingEngineError, ShapeError
 
     def deeper(n):                        # without defaults: 3.13.0 forgets to count calls that use them
         return deeper(n + 1)
 
-    def command(what: str, *, times: int = 1, json_: bool = False) -> int:
+    def command(what: str, *, times: int = 1) -> Told:
         """Count."""
         if what == "shape":
             raise ShapeError("expected 2 rows; got 3; drop one", where="a.toml: F")
@@ -39,7 +39,7 @@ VERB = '''
         if what == "defect":
             raise KeyError("x\\n\\x1b[31my")
         if what == "nan":
-            emit({"x": float("nan")}, as_json=True, text="")
+            Told({"x": float("nan")}, "").print(as_json=True)
         if what == "deep":
             return deeper(0)
         if what == "cut":
@@ -51,8 +51,8 @@ VERB = '''
         if what == "exit":
             raise typer.Exit(1)
         if what == "differs":
-            return 1
-        emit({"what": what, "times": times}, as_json=json_, text=lambda: what * times)
+            return Told({}, "", 1)
+        return Told({"what": what, "times": times}, lambda: what * times)
 '''
 
 

@@ -15,7 +15,7 @@ import numpy as np
 import pytest
 
 from navsym.cli import output
-from navsym.cli.output import OutputError, dumps, emit, plain_table, put, table, visible, write_text
+from navsym.cli.output import OutputError, Told, dumps, plain_table, put, table, visible, write_text
 
 ROOT = Path(__file__).resolve().parents[2]
 
@@ -23,7 +23,7 @@ ROOT = Path(__file__).resolve().parents[2]
 
 
 def test_a_document_is_one_line_of_text_per_key_and_nothing_else(capsys: pytest.CaptureFixture[str]) -> None:
-    emit({"a": [1, 2.5, None, True], "σ": "ё"}, as_json=True, text="never")
+    assert Told({"a": [1, 2.5, None, True], "σ": "ё"}, "never", 3).print(as_json=True) == 3
     assert json.loads(capsys.readouterr().out) == {"a": [1, 2.5, None, True], "σ": "ё"}
 
 
@@ -31,9 +31,9 @@ def test_the_text_is_only_made_when_it_is_wanted(capsys: pytest.CaptureFixture[s
     def explode() -> str:
         raise AssertionError("called")
 
-    emit({}, as_json=True, text=explode)
-    emit({}, as_json=False, text=lambda: "shown")
-    emit({}, as_json=False, text=lambda: None)
+    Told(dict, explode).print(as_json=True)
+    Told(explode, lambda: "shown").print(as_json=False)
+    Told({}, "").print(as_json=False)
     assert capsys.readouterr().out == "{}\nshown\n"
 
 
@@ -183,8 +183,8 @@ def test_an_output_that_is_full_or_closed_is_one_line_on_standard_error(options,
 
 def test_text_for_people_keeps_no_control_character_but_the_colours_of_a_terminal(monkeypatch, capsys) -> None:
     text = "title \x1b[31mred\x1b]0;window\x07 \u202eleft"
-    emit({}, as_json=False, text=text)
+    Told({}, text).print(as_json=False)
     assert capsys.readouterr().out == "title \\x1b[31mred\\x1b]0;window\\x07 \\u202eleft\n"
     monkeypatch.setattr("navsym.cli.output.wants_colour", lambda: True)
-    emit({}, as_json=False, text=text)
+    Told({}, text).print(as_json=False)
     assert capsys.readouterr().out == "title \x1b[31mred\\x1b]0;window\\x07 \\u202eleft\n"

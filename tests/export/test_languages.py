@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import shutil
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -46,7 +47,10 @@ def test_single_precision_stays_inside_its_enclosures(language: str, tmp_path: P
 
 @pytest.mark.skipif("c" not in HERE, reason="needs a C compiler")
 def test_sanitizers_find_nothing_in_the_c_code(tmp_path: Path) -> None:
-    outcome = run_target(exported(samples.functions(), "c", tmp_path), TARGETS["c"], sanitize=True)
+    compile_step, run_step = TARGETS["c"].steps
+    watched = compile_step.replace("{tool}", "{tool} -fsanitize=address,undefined -fno-sanitize-recover=all")
+    target = replace(TARGETS["c"], steps=(watched, run_step))
+    outcome = run_target(exported(samples.functions(), "c", tmp_path), target)
     assert outcome.status == "verified", outcome.why
 
 

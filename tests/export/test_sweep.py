@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+import sympy as sp
 from flint import arb
 from hypothesis import given, settings
 from hypothesis import strategies as st
@@ -183,8 +184,8 @@ def test_a_status_that_is_not_ok_is_caught(tmp_path: Path) -> None:
 @settings(max_examples=20)
 @given(st.integers(0, 10**6))
 def test_float_points_are_numbers_of_the_type(seed: int) -> None:
-    from navsym.export.inputs import inner
+    from navsym.export.parts import inside
 
     low = -0.3 - seed * 1e-9
-    assert float(np.float32(inner(low, 1, "float"))) == inner(low, 1, "float") >= low
-    assert inner(low, 1, "double") == low
+    assert float(np.float32(inside(sp.Rational(low), 1, "float"))) == inside(sp.Rational(low), 1, "float") >= low
+    assert inside(sp.Rational(low), 1, "double") == low

@@ -8,15 +8,16 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
+from navsym.core.numbers import Number
 from navsym.report.citation import bibtex
-from navsym.report.explain import arithmetic, ball_words, entries_of, steps
+from navsym.report.explain import arithmetic, entries_of, number_words, steps
 from tests.report import hostile
 
 
 def test_the_counterexample_is_worked_out_on_both_sides(records):
     (line,) = arithmetic(records[1])
     assert line.differs
-    assert all(Fraction(end) == pytest.approx(Fraction(-1, 2)) for end in line.printed)
+    assert all(Fraction(end) == pytest.approx(Fraction(-1, 2)) for end in (line.printed.lower, line.printed.upper))
     words = " ".join(step.words for step in steps(records[1]))
     assert "At T = pi/6" in words and "One point is enough" in words and "the sign is lost" in words
 
@@ -28,8 +29,8 @@ def test_the_enclosing_decimals_hold_the_exact_value(a, b):
     )
     for line in lines:
         for ends, exact in ((line.printed, a / b + 1), (line.derived, a * b)):
-            assert Fraction(ends[0]) <= exact <= Fraction(ends[1])
-            assert Fraction(ends[1]) - Fraction(ends[0]) < Fraction(1, 10**15)
+            assert Fraction(ends.lower) <= exact <= Fraction(ends.upper)
+            assert Fraction(ends.upper) - Fraction(ends.lower) < Fraction(1, 10**15)
     assert lines
 
 
@@ -61,9 +62,16 @@ def test_entries_of_tuples_and_matrices():
 
 
 def test_digits_are_cut_where_the_ends_part():
-    assert ball_words(("0.0411961001461", "0.0411961001462")) == "0.041196100146…"
-    assert ball_words(("3.000", "3.000")) == "3"
-    assert ball_words(("-1", "2")) == "between -1 and 2"
+    for lower, upper, words in (
+        ("0.0411961001461", "0.0411961001462", "0.041196100146…"),
+        ("3.000", "3.000", "3"),
+        ("25.847165715993691099", "25.847165715993691100", "25.84716571599…"),
+        ("0.15639246697984", "0.15639246697985", "0.156392466979…"),
+        ("0.99499999999999999999", "0.99500000000000000001", "0.995"),
+        ("1.9999", "2.0001", "between 1.9999 and 2.0001"),
+        ("-1", "2", "between -1 and 2"),
+    ):
+        assert number_words(Number(lower, upper)) == words
 
 
 def test_a_citation_names_paper_and_verdict(records, card):

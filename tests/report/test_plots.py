@@ -49,3 +49,13 @@ def test_regimes_differ_in_line_style_as_well_as_in_colour():
     lines = PICTURES["phases"]().axes[0].get_lines()
     drawn = [line for line in lines if line.get_label() in ("1/T", "1")]
     assert len({line.get_linestyle() for line in drawn}) == len({line.get_color() for line in drawn}) == 2
+
+
+@pytest.mark.parametrize("name", ["modes", "phases"])
+def test_pictures_of_the_documentation_are_drawn_by_what_the_package_draws(name):
+    """What a picture adds to a drawing of the package is done to its axes: options of the drawing come and go."""
+    from docs import pictures
+
+    axes = pictures.PICTURES[name]().axes[0]
+    assert axes.get_yscale() == ("log" if name == "phases" else "linear")
+    assert name == "phases" or [words.get_text() for words in axes.texts] == ["truth"]

@@ -218,44 +218,36 @@ def filled_bounds(part: Part, a: Bounded, arithmetic: Arithmetic) -> Bounded:
     known = continuation(part, arithmetic.name)
     if not (a.value.is_finite() and a.absolute.is_finite()):
         return NOTHING
-    wide = zones(known, a.value + arb(0, a.absolute))
+    inside, outside = zones(known, a.value + arb(0, a.absolute))
     exact = zones(known, a.value)
-    values = [outside_bounds(known, t, arithmetic).value for t in exact.outside]
-    value = reduce(arb.union, [*map(known.value, exact.inside), *values])
-    own = [inside_rounding(known, t, arithmetic) for t in wide.inside]
-    own += [(f.absolute, f.relative) for f in (outside_bounds(known, t, arithmetic) for t in wide.outside)]
+    values = [outside_bounds(known, t, arithmetic).value for t in exact[1]]
+    value = reduce(arb.union, [*map(known.value, exact[0]), *values])
+    own = [inside_rounding(known, t, arithmetic) for t in inside]
+    own += [(f.absolute, f.relative) for f in (outside_bounds(known, t, arithmetic) for t in outside)]
     absolute, relative = (reduce(arb.max, side) for side in zip(*own, strict=True))
     if a.absolute == 0:
         return tightened(value, absolute, relative, INFINITE)
-    slopes = [slope_inside(known, t) for t in wide.inside]
-    slopes += [sane(known.quotient.run({T: arb_series([t, arb(1)], 2)})[1]) for t in wide.outside]
+    slopes = [slope_inside(known, t) for t in inside]
+    slopes += [sane(known.quotient.run({T: arb_series([t, arb(1)], 2)})[1]) for t in outside]
     carried = reduce(arb.max, slopes) * a.absolute
     passed = ratio(sane(carried), value)
-    if not wide.outside:
+    if not outside:
         passed = passed.min(relative_inside(known, a))
     return tightened(value, sane(carried + absolute), sane(passed + relative * (1 + passed)), INFINITE)
 
 
-@dataclass(frozen=True, slots=True)
-class Zones:
-    """The parts of a ball on which the polynomial may be used, and those on which the plain form may."""
-
-    inside: tuple[arb, ...]
-    outside: tuple[arb, ...]
-
-
-def zones(known: Continuation, t: arb) -> Zones:
-    """A ball cut at the switch; a margin beyond it belongs to the polynomial as well."""
+def zones(known: Continuation, t: arb) -> tuple[list[arb], list[arb]]:
+    """A ball cut at the switch: parts for the polynomial, with a margin beyond the switch, and for the plain form."""
     switch = arb(known.switch)
     if abs(t) < switch:
-        return Zones((t,), ())
+        return [t], []
     if abs(t) >= switch:
-        return Zones((), (t,))
+        return [], [t]
     low, high, reach = arb(t.lower()), arb(t.upper()), switch * MARGIN
     inside = low.max(-reach).union(high.min(reach))
     outside = [switch.max(low).union(high)] if high >= switch else []
     outside += [low.union((-switch).min(high))] if low <= -switch else []
-    return Zones((inside,), tuple(outside))
+    return [inside], outside
 
 
 def inside_rounding(known: Continuation, t: arb, arithmetic: Arithmetic) -> tuple[arb, arb]:

@@ -15,7 +15,7 @@ import sympy as sp
 from flint import arb
 
 from navsym.core.balls import precision
-from navsym.export.accuracy.rounding import BITS, Arithmetic, Bounded, down, up
+from navsym.export.accuracy.rounding import BITS, Arithmetic, down, up
 from navsym.export.accuracy.underflow import Margins
 from navsym.export.accuracy.uniform import on_cell, starting_cells
 from navsym.export.expression_graph import Graph, Node
@@ -37,7 +37,7 @@ def watched(graph: Graph, box: Sequence[tuple[float, float]], arithmetic: Arithm
         if found == hidden:
             break
         done = on_cell(graph, cell, arithmetic, literals)
-        found |= {k for k in hidden - found if not finite(done[k], arithmetic)}
+        found |= {k for k in hidden - found if not done[k].is_finite(arithmetic)}
     needed = {a for node in graph.nodes if node.op in RELATIVE for a in node.args} & made(graph)
     ranges, least = sizes(graph, box, arithmetic, literals), arithmetic.eta - arithmetic.u
     small = [k for k in sorted(needed) if (known := ranges[k]) is not None and known.low < least]
@@ -120,12 +120,6 @@ def with_guards(graph: Graph, large: Sequence[int], small: Sequence[int], margin
 def made(graph: Graph) -> set[int]:
     """The nodes that are results of operations."""
     return {k for k, node in enumerate(graph.nodes) if node.op not in ("input", "const")}
-
-
-def finite(found: Bounded, arithmetic: Arithmetic) -> bool:
-    """True for a value that is proved to be finite in code."""
-    with precision(BITS):
-        return bool(up(found.value) + found.absolute < arb(2) ** arithmetic.top)
 
 
 def log2(x: arb) -> float:

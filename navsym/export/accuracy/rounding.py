@@ -72,6 +72,10 @@ class Bounded:
     relative: arb
     scaled: arb
 
+    def is_finite(self, arithmetic: Arithmetic) -> bool:
+        """True for a value that is proved to be finite in code."""
+        return bool(up(self.value) + self.absolute < arb(2) ** arithmetic.top)
+
 
 INFINITE = arb("inf")
 
@@ -88,18 +92,13 @@ def factor(op: str, arithmetic: Arithmetic) -> int:
 Filled = Callable[[Any, Bounded, Arithmetic], Bounded]
 
 
-def no_parts(part: Any, argument: Bounded, arithmetic: Arithmetic) -> Bounded:
-    """For graphs without parts that have a hole."""
-    raise AssertionError(f"a branch of a part has no part itself, but came to {part}")
-
-
 def followed(
-    graph: Graph, inputs: Sequence[arb], arithmetic: Arithmetic, literals: Sequence[Any], filled: Filled = no_parts
+    graph: Graph, inputs: Sequence[arb], arithmetic: Arithmetic, literals: Sequence[Any], filled: Filled | None = None
 ) -> list[Bounded]:
     """Value and error bounds of every node over the box of the inputs, which are taken as exact.
 
     literals : the number that stands in the code for each constant node (None for other nodes)
-    filled   : the bounds of a part with a hole (:mod:`navsym.export.accuracy.continuation`)
+    filled   : the bounds of a part with a hole (:mod:`navsym.export.accuracy.continuation`), where the graph has some
     """
     with precision(BITS):
         done: list[Bounded] = []
@@ -116,13 +115,14 @@ def followed(
         return done
 
 
-def rounded(node: Node, args: list[Bounded], arithmetic: Arithmetic, filled: Filled) -> Bounded:
+def rounded(node: Node, args: list[Bounded], arithmetic: Arithmetic, filled: Filled | None) -> Bounded:
     """One operation: errors of the arguments carried through, and its own rounding; none is known if it overflows."""
-    part = node.op == "filled"
-    found = filled(node.value, args[0], arithmetic) if part else rounded_plainly(node, args, arithmetic)
-    if up(found.value) + found.absolute < arb(2) ** arithmetic.top:
-        return found
-    return Bounded(found.value, INFINITE, INFINITE, INFINITE)
+    if node.op == "filled":
+        assert filled is not None, "a branch of a part has no part itself"
+        found = filled(node.value, args[0], arithmetic)
+    else:
+        found = rounded_plainly(node, args, arithmetic)
+    return found if found.is_finite(arithmetic) else Bounded(found.value, INFINITE, INFINITE, INFINITE)
 
 
 def rounded_plainly(node: Node, args: list[Bounded], arithmetic: Arithmetic) -> Bounded:
@@ -178,6 +178,13 @@ def up(x: arb) -> arb:
 def down(x: arb) -> arb:
     """A lower bound of |x| without a radius."""
     return arb(x.abs_lower())
+
+
+def float_above(x: arb) -> float:
+    """The least double that is certainly not below a ball, or the next one; infinity where the ball is not finite."""
+    top = x.upper()
+    near = float(top) if x.is_finite() else math.inf
+    return near if arb(near) >= top else math.nextafter(near, math.inf)
 
 
 def sane(bound: arb) -> arb:

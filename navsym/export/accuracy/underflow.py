@@ -56,7 +56,8 @@ class Margins(Builder):
     def underflows(self, place: int) -> bool:
         """Whether the operation itself may give a result below the normal numbers from arguments that are exact."""
         node = self.nodes[place]
-        grows = node.op == "mul" and any(self.is_at_least_one(a) for a in node.args)
+        sizes = [self.ranges[a] for a in node.args]
+        grows = node.op == "mul" and any(size is not None and size.low >= 0 for size in sizes)  # a factor of at least 1
         return node.op in PRODUCTS and not grows and self.lows[place] < self.least
 
     def is_large(self, place: int) -> bool:
@@ -116,11 +117,6 @@ class Margins(Builder):
         factors = node.args if node.op == "mul" else node.args[:1] if node.op != "exp" else ()
         zeros = [self.is_zero(a) for a in dict.fromkeys(factors) if self.ranges[a] is None]
         return self.smallest([self.total([self.put("abs", place), *zeros]), *behind])
-
-    def is_at_least_one(self, place: int) -> bool:
-        """Whether a factor makes nothing smaller."""
-        size = self.ranges[place]
-        return size is not None and size.low >= 0
 
     def total(self, places: Sequence[int]) -> int:
         """The sum of values."""

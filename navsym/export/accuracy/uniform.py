@@ -11,7 +11,7 @@ from flint import arb
 
 from navsym.core.balls import precision
 from navsym.export.accuracy.continuation import analyse
-from navsym.export.accuracy.rounding import BITS, Arithmetic, Bounded, up
+from navsym.export.accuracy.rounding import BITS, Arithmetic, Bounded, float_above
 from navsym.export.expression_graph import Graph
 
 CELLS = 160
@@ -103,12 +103,12 @@ def measured(graph: Graph, box: Box, arithmetic: Arithmetic, literals: Sequence[
     found = on_cell(graph, box, replace(arithmetic, top=NEVER), literals)
     results = [found[root] for root in graph.roots]
     with precision(BITS):
-        unit, largest = arithmetic.unit(), arb(2) ** arithmetic.top
+        unit = arithmetic.unit()
         return Uniform(
-            tuple(upper_float(r.relative / unit) for r in results),
-            tuple(upper_float(r.scaled / unit) for r in results),
-            tuple(upper_float(r.absolute) for r in results),
-            all(bool(up(node.value) + node.absolute < largest) for node in found),
+            tuple(float_above(r.relative / unit) for r in results),
+            tuple(float_above(r.scaled / unit) for r in results),
+            tuple(float_above(r.absolute) for r in results),
+            all(node.is_finite(arithmetic) for node in found),
         )
 
 
@@ -117,8 +117,3 @@ def on_cell(graph: Graph, cell: Box, arithmetic: Arithmetic, literals: Sequence[
     with precision(BITS):
         balls = [arb(low).union(arb(high)) if low != high else arb(low) for low, high in cell]
     return analyse(graph, balls, arithmetic, literals)
-
-
-def upper_float(x: arb) -> float:
-    """A float not below x; infinite when x is not finite."""
-    return float(x.upper()) * (1 + 2.0**-50) if x.is_finite() else float("inf")

@@ -18,9 +18,9 @@ from flint import arb
 
 from navsym.core.balls import Tape, enclose, precision, tape
 from navsym.export.accuracy.continuation import analyse, continuation
-from navsym.export.accuracy.rounding import BITS, INFINITE, Arithmetic, Bounded
+from navsym.export.accuracy.rounding import BITS, INFINITE, Arithmetic, Bounded, float_above
 from navsym.export.expression_graph import Node
-from navsym.export.parts import ExportedFunction, Input, Piece
+from navsym.export.parts import ExportedFunction, Piece
 
 OK, DOMAIN, NOT_FINITE = 0, 1, 2
 MORE_BITS = (512, 2048)
@@ -124,13 +124,7 @@ def outward_ends(value: arb, error: arb) -> tuple[float, float, float] | None:
     if not (value.is_finite() and error.is_finite()):
         return None
     wide = value + arb(0, error)
-    return below(wide.lower()), -below((-wide).lower()), float(value.mid())
-
-
-def below(x: arb) -> float:
-    """A double not above an exact ball."""
-    y = float(x)
-    return y if arb(y) <= x else math.nextafter(y, -math.inf)
+    return 0.0 - float_above(-wide), float_above(wide), float(value.mid())
 
 
 def piece_at(function: ExportedFunction, point: Sequence[float]) -> Piece:
@@ -152,11 +146,11 @@ def points(function: ExportedFunction, count: int) -> Iterator[tuple[float, ...]
     middle = [(i.test_low + i.test_high) / 2 for i in function.inputs]
     for k, values in enumerate(edges):
         for value in values[: max(4, count // (4 * len(edges)))]:
-            others = [sample(i, generator) for i in function.inputs] if generator.random() < 0.7 else list(middle)
+            others = sample_all(function, generator) if generator.random() < 0.7 else list(middle)
             others[k] = value
             yield cast(function, others)
     for _ in range(count):
-        yield cast(function, [sample(i, generator) for i in function.inputs])
+        yield cast(function, sample_all(function, generator))
 
 
 def edge_values(function: ExportedFunction, k: int) -> list[float]:
@@ -181,24 +175,28 @@ def switches(function: ExportedFunction, k: int) -> set[float]:
 
 def next_float(function: ExportedFunction):  # type: ignore[no-untyped-def]
     """The function (x, to) -> the number of the function's type next to x towards ``to``."""
-    if function.arithmetic.name == "double":
-        return math.nextafter
+    kind = np.float32 if function.arithmetic.name == "float" else np.float64
 
     def step(x: float, to: float) -> float:
         with np.errstate(over="ignore"):  # behind the largest number comes infinity
-            return float(np.nextafter(np.float32(x), np.float32(to)))
+            return float(np.nextafter(kind(x), kind(to)))
 
     return step
 
 
-def sample(i: Input, generator: random.Random) -> float:
+def sample_all(function: ExportedFunction, generator: random.Random) -> list[float]:
+    """A number for each input."""
+    return [sample(i.test_low, i.test_high, generator) for i in function.inputs]
+
+
+def sample(low: float, high: float, generator: random.Random) -> float:
     """Uniform, or logarithmic towards the end that is nearest to zero."""
-    if i.test_low > 0 and generator.random() < 0.4:
-        return math.exp(generator.uniform(math.log(max(i.test_low, 1e-6)), math.log(i.test_high)))
-    if i.test_low < 0 < i.test_high and generator.random() < 0.3:
+    if low > 0 and generator.random() < 0.4:
+        return math.exp(generator.uniform(math.log(max(low, 1e-6 * min(1.0, high))), math.log(high)))
+    if low < 0 < high and generator.random() < 0.3:
         sign = generator.choice((-1, 1))
-        return sign * min(-i.test_low, i.test_high) * 10 ** generator.uniform(-6, 0)
-    return 2 * generator.uniform(i.test_low / 2, i.test_high / 2)  # the width of a range may be infinite
+        return sign * min(-low, high) * 10 ** generator.uniform(-6, 0)
+    return 2 * generator.uniform(low / 2, high / 2)  # the width of a range may be infinite
 
 
 def cast(function: ExportedFunction, point: Sequence[float]) -> tuple[float, ...]:

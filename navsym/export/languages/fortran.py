@@ -5,7 +5,6 @@ from __future__ import annotations
 from collections.abc import Sequence
 
 from navsym.export.accuracy.vectors import Vector
-from navsym.export.languages.helpers import helpers_used, operations_of
 from navsym.export.languages.writer import PrintedPiece, short_names, vectors_text, writer_of
 from navsym.export.parts import ExportedFunction
 
@@ -16,8 +15,6 @@ def files(functions: Sequence[ExportedFunction], tests: dict[str, list[Vector]],
     """Module and test program."""
     given = {"functions": functions, "names": short_names(functions), "license": license_}
     widest = max(len(f.inputs) + 3 * f.size for f in functions)
-    operations = {op for f in functions for piece in f.pieces for op in piece.graph.operations()}
-    operations |= {op for part, real in helpers_used(*functions) for op in operations_of(part, real)}
     test = WRITER.render(
         "test_vectors.f90",
         widest=widest,
@@ -25,7 +22,9 @@ def files(functions: Sequence[ExportedFunction], tests: dict[str, list[Vector]],
         longest=max(20000, 26 * widest + 300),
         **given,
     )
-    module = WRITER.render("navsym_functions.f90", calls_expm1="expm1" in operations, locals=local_names, **given)
+    module = WRITER.render("navsym_functions.f90", calls_expm1=False, locals=local_names, **given)
+    if "navsym_expm1(" in module:  # the language has no such function
+        module = WRITER.render("navsym_functions.f90", calls_expm1=True, locals=local_names, **given)
     return {
         "navsym_functions.f90": continued(module),
         "test_vectors.f90": continued(test),

@@ -47,12 +47,6 @@ def helpers_used(*functions: ExportedFunction) -> list[tuple[Part, str]]:
     return sorted(used, key=lambda pair: name_of(pair[0]))
 
 
-def operations_of(part: Part, real: str) -> set[str]:
-    """What both branches of a part call."""
-    known = continuation(part, real)
-    return {*known.below.operations(), *known.above.operations()}
-
-
 def print_helper(part: Part, real: str, s: Spelling, x: str) -> PrintedHelper:
     """A part in this language; ``x`` is the argument of the formula above the switch."""
     known = continuation(part, real)

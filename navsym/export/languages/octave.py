@@ -56,10 +56,8 @@ def counted_from_one(line: str) -> str:
 
 def in_range(function: ExportedFunction, argument: Argument) -> str:
     """The test of one argument; entries of an array have one range or their own."""
-    inputs = function.inputs[argument.first : argument.first + (argument.size or 1)]
-    ends = [
-        [WRITER.spelling.number(x) for x in column] for column in ([i.low for i in inputs], [i.high for i in inputs])
-    ]
+    entries = WRITER.ends(function)[argument.first : argument.first + (argument.size or 1)]
+    _, *ends = zip(*entries, strict=True)
     low, high = (column[0] if len(set(column)) == 1 else f"[{' '.join(column)}]" for column in ends)
     return f"navsym_numbers({argument.name}, {argument.size or 1}, {low}, {high})"
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 import textwrap
+from dataclasses import asdict
 from typing import Any
 
 from navsym.export.parts import ExportedFunction, Output, Piece
@@ -88,6 +89,39 @@ def state_record(function: ExportedFunction) -> dict[str, Any] | None:
     places = {a.name: k for k, a in enumerate(function.called_with)}
     fields = [{"name": old, "argument": places.get(old, -1), "output": new} for old, new in function.fields.items()]
     return {"program": function.state.program, "fields": fields, "outputs": [o.name for o in function.outputs]}
+
+
+def function_record(function: ExportedFunction) -> dict[str, Any]:
+    """A function for the manifest: inputs with ranges, arguments, outputs, state and pieces."""
+    return {
+        "name": function.name,
+        "inputs": [
+            {"name": i.name, "symbol": i.symbol.name, "range": i.text, "unit": i.unit or None} | ends(i.low, i.high)
+            for i in function.inputs
+        ],
+        "arguments": [{"name": a.name, "inputs": [a.first, a.size or 1]} for a in function.called_with],
+        "outputs": [{"name": o.name, "shape": list(o.shape), "unit": o.unit or None} for o in function.outputs],
+        "state": state_record(function),
+        "pieces": [piece_record(function, piece) for piece in function.pieces],
+    }
+
+
+def ends(low: float, high: float) -> dict[str, float | None]:
+    """Accepted range; null where it has no end."""
+    infinite = float("inf")
+    return {"low": None if low == -infinite else low, "high": None if high == infinite else high}
+
+
+def piece_record(function: ExportedFunction, piece: Piece) -> dict[str, Any]:
+    """A piece for the manifest: where it ends, its source without the certificate, operations, rounding bound."""
+    source = {k: v for k, v in asdict(piece.source).items() if k != "certificate"}
+    return {
+        "up_to": piece.limit,
+        "source": source,
+        "operations": dict(sorted(piece.graph.operations().items())),
+        "rounding": bound_text(function, piece),
+        "tie": piece.tie,
+    }
 
 
 TIES = {

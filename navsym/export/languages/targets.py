@@ -6,7 +6,6 @@ import functools
 import importlib
 import importlib.util
 import shutil
-import subprocess
 import sys
 import tomllib
 from collections.abc import Callable, Mapping, Sequence
@@ -15,6 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from navsym.core.errors import DomainError
+from navsym.export.processes import run
 
 WARNINGS = ("-Wall", "-Wextra", "-Wconversion", "-Wdouble-promotion", "-pedantic", "-Werror")
 WORDS = {
@@ -22,7 +22,6 @@ WORDS = {
     "{headless}": """--headless --no-sandbox --disable-gpu --disable-quic --no-first-run --disable-background-networking
     --disable-component-update --disable-sync --virtual-time-budget=20000""".split(),
 }
-SANITIZERS = ("-fsanitize=address,undefined", "-fno-sanitize-recover=all")
 
 
 @dataclass(frozen=True, slots=True)
@@ -73,11 +72,7 @@ def answering(tool: str) -> str | None:
 @functools.cache
 def answers(path: str) -> bool:
     """True when the program ends well after being asked for its version."""
-    try:
-        done = subprocess.run([path, "--version"], stdin=subprocess.DEVNULL, capture_output=True, timeout=60)
-    except (OSError, subprocess.TimeoutExpired):
-        return False
-    return done.returncode == 0
+    return run([path, "--version"], Path.cwd())[0] == 0
 
 
 def read_row(row: Mapping[str, Any]) -> dict[str, Any]:

@@ -11,12 +11,13 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
+from navsym.core.answers import named
 from navsym.core.errors import MissingEngineError
 from navsym.export.accuracy.vectors import Vector
 from navsym.export.languages.c import files as c_files
 from navsym.export.languages.c import writer
-from navsym.export.languages.summary import bound_text, unit_of
-from navsym.export.parts import ExportedFunction, Piece
+from navsym.export.languages.summary import function_record
+from navsym.export.parts import ExportedFunction
 from navsym.export.processes import run
 
 FLAGS = ("-target", "wasm32-wasi", "-mexec-model=reactor", "-O2", "-s", "-std=c99", "-ffp-contract=off")
@@ -59,42 +60,18 @@ def compiled(functions: Sequence[ExportedFunction], tests: dict[str, list[Vector
 
 
 def record(function: ExportedFunction, tests: Sequence[Vector]) -> dict[str, Any]:
-    """One function as data of the page."""
-    u = 2.0**function.arithmetic.u
-    return {
-        "name": function.name,
+    """A function as data of the page: what the manifest says of it, a first point, its bounds and its vectors."""
+    found, u = function_record(function), 2.0**function.arithmetic.u
+    for piece, row in zip(function.pieces, found["pieces"], strict=True):
+        row |= {"relative": finite(piece.bound.relative, u), "absolute": finite(piece.bound.absolute, 1.0)}
+    return found | {
         "real": function.arithmetic.name,
-        "inputs": [
-            {"name": i.symbol.name, "text": i.text, "unit": unit_of(i.unit), "low": i.test_low, "high": i.test_high}
-            for i in function.inputs
-        ],
-        "results": [
-            {"name": f"{o.name}[{k}]" if o.shape else o.name, "unit": unit_of(o.unit)}
-            for o in function.outputs
-            for k in range(o.size)
-        ],
         "switch": function.switch,
-        "pieces": [piece_record(function, piece, u) for piece in function.pieces],
-        "vectors": [
-            {"in": v.inputs, "lower": v.lower, "upper": v.upper, "nearest": v.nearest} for v in tests if v.status == 0
-        ],
+        "start": [i.test_low / 2 + i.test_high / 2 for i in function.inputs],
+        "vectors": [named(v, "inputs lower upper nearest") for v in tests if v.status == 0],
     }
 
 
-def piece_record(function: ExportedFunction, piece: Piece, u: float) -> dict[str, Any]:
-    """Verdict, formula and bounds of one regime; null where a bound is not finite."""
-
-    def finite(values: Sequence[float], scale: float) -> list[float | None]:
-        return [x * scale * (1 + 2.0**-40) if x < 1e9 else None for x in values]
-
-    return {
-        "limit": piece.limit,
-        "claim": piece.source.claim,
-        "status": piece.source.status,
-        "method": piece.source.method,
-        "where": ", ".join(word for word in (piece.source.paper, piece.source.equation) if word),
-        "formula": list(piece.source.formula),
-        "rounding": bound_text(function, piece),
-        "relative": finite(piece.bound.relative, u),
-        "absolute": finite(piece.bound.absolute, 1.0),
-    }
+def finite(values: Sequence[float], scale: float) -> list[float | None]:
+    """Bounds times a scale, rounded up; null where one is not finite."""
+    return [x * scale * (1 + 2.0**-40) if x < 1e9 else None for x in values]

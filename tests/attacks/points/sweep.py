@@ -88,7 +88,9 @@ def many_points(function: ExportedFunction, count: int) -> Iterator[tuple[float,
         yield cast(
             function,
             [
-                generator.choice(ends) if corner and generator.random() < 0.5 else sample(i, generator)
+                generator.choice(ends)
+                if corner and generator.random() < 0.5
+                else sample(i.test_low, i.test_high, generator)
                 for i, ends in zip(function.inputs, edges, strict=True)
             ],
         )
