@@ -215,7 +215,7 @@ def by_sum(goal: Any, sample: list[arb]) -> Iterator[Proof]:
 def separate(goal: Any, terms: list[Term]) -> Iterator[Proof]:
     """The terms of each symbol for themselves, where no two have one in common; what remains above 0 is strict.
 
-    A number is shared out so that each part is 0 where its symbols are, or at the end of their ranges where it is least.
+    A number is shared out so that each part is 0 where its symbols are, or at the end of its range where it is least.
     """
     groups: list[list[Term]] = []
     for term in terms:
