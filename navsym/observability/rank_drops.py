@@ -37,6 +37,7 @@ from navsym.observability.tree import (
     Cases,
     Leaf,
     is_covered,
+    is_empty,
     leaf_on,
     lost_columns,
     named_values,
@@ -294,7 +295,8 @@ class View:
                     leaves=leaves,
                 )
             )
-        partial = [(conditions_on(leaf.system, ring), leaf) for leaf in known if leaf.nonzero]
+        real = [leaf for leaf in known if leaf.nonzero and not is_empty(leaf.system, ring.with_units(leaf.nonzero))]
+        partial = [(conditions_on(leaf.system, ring), leaf) for leaf in real]
         return listed + [
             self.make_drop(zeros, nonzero=tuple(map(ring.condition, leaf.nonzero)), rank=leaf.rank, leaves=(leaf,))
             for zeros, leaf in partial
