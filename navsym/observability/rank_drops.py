@@ -141,23 +141,9 @@ def determinant_at(starts: Sequence[tuple[Table, int]], motion: Table, n: int, p
 def along_first_axis(values: list[fmpz], bound: int) -> list[fmpz]:
     """From values at 0..bound to coefficients along the first axis of a grid, which becomes the last one."""
     size = bound + 1
+    powers = fmpz_mat([[k**j for j in range(size)] for k in range(size)])
     table = fmpz_mat(size, len(values) // size, values)
-    found = (newton(bound) * table).transpose().entries()
-    scale = math.factorial(bound)
-    return [value // scale for value in found]
-
-
-def newton(bound: int) -> fmpz_mat:
-    """bound! times the inverse of the matrix of powers of 0..bound: Lagrange's polynomials, in integers."""
-    columns = []
-    for own in range(bound + 1):
-        others = [other for other in range(bound + 1) if other != own]
-        product = [1]
-        for other in others:
-            product = [a - other * b for a, b in zip([0, *product], [*product, 0], strict=True)]
-        share = math.factorial(bound) // math.prod(own - other for other in others)
-        columns.append([share * c for c in product])
-    return fmpz_mat(bound + 1, bound + 1, [c for row in zip(*columns, strict=True) for c in row])
+    return [value.p for value in powers.solve(table).transpose().entries()]
 
 
 #: Cases of rows that do not move.
