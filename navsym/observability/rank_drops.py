@@ -142,8 +142,8 @@ def along_first_axis(values: list[fmpz], bound: int) -> list[fmpz]:
     """From values at 0..bound to coefficients along the first axis of a grid, which becomes the last one."""
     size = bound + 1
     powers = fmpz_mat([[k**j for j in range(size)] for k in range(size)])
-    table = fmpz_mat(size, len(values) // size, values)
-    return [value.p for value in powers.solve(table).transpose().entries()]
+    found: Any = powers.solve(fmpz_mat(size, len(values) // size, values))
+    return [value.p for value in found.transpose().entries()]
 
 
 #: Cases of rows that do not move.
