@@ -12,7 +12,7 @@ from collections.abc import Iterable, Iterator, Mapping, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from fractions import Fraction
-from itertools import chain, count, product
+from itertools import chain, count, islice, product
 from math import lcm, prod
 from typing import Any
 
@@ -27,17 +27,18 @@ from navsym.core.rational_functions import cancel_fraction, replace_square
 from navsym.language.printer import to_text
 from navsym.models.certificates import matrix_texts
 from navsym.models.linear import LinearModel
-from navsym.observability.cases import replace_in_entry, solved_variables
+from navsym.observability.cases import replace_in_entry, replace_in_row, solved_variables
 from navsym.observability.chains import JointObservability
-from navsym.observability.linear import Matrix, null_vectors, scalar_product
+from navsym.observability.linear import Matrix, null_vectors, primitive_vector, scalar_product
 from navsym.observability.motion import Motion, motion_of
+from navsym.observability.points import search_points
 from navsym.observability.rank_drops import RankDrop
 from navsym.observability.reduction import System, lies_in_ideal
 from navsym.observability.ring import Poly, Ring
 from navsym.observability.tree import linear_places
 
 #: Points tried, terms of the columns and of all remainders of a constant and of a moving model, bits for each state.
-POINTS, COLUMN_TERMS, TERMS, BITS = 6, (4000, 1500), (200_000, 30_000), 96
+POINTS, COLUMN_TERMS, TERMS, BITS = 6, (4000, 1500), (200_000, 60_000), 96
 #: Rounds of divisions by all zeros, and steps of Newton's method.
 DIVISIONS, NEWTON = 20, 25
 #: Why there is no certificate.
@@ -104,15 +105,9 @@ class Certifier:
         units = nonzero or []
         motion = replace(self.motion, ring=self.motion.ring.with_units(units)) if units else self.motion
         said = Statement(self.model, motion, self.rows, self.bottoms, places, system, rank, units)
-        with suppress(NavsymError):
-            long = sum(map(len, chain(*columns))) > COLUMN_TERMS[bool(motion.rates)]
-            columns, free = diagonal_columns([] if long else columns, motion.size, motion.ring, system)
-            if len(columns) != motion.size - rank:
-                return LONG
-            shares = factors_of(said, columns, free, said.zeros) if said.zeros else []
-            proposed = propose(said, columns, free, shares or [])
-            return NO_SHARES if shares is None else next(filter(is_granted, proposed), NO_POINT)
-        return LONG
+        found = certify_columns(said, columns)
+        shorter = shorten_columns(columns, said) if isinstance(found, str) else columns
+        return certify_columns(said, shorter) if count_terms(shorter) < count_terms(columns) else found
 
     def certify_rank(self, joint: JointObservability) -> dict[str, Any] | str:
         """The generic rank of all measurements together."""
@@ -128,6 +123,45 @@ class Certifier:
         if reasons or not found:
             return next(iter(reasons), NO_RANK if drop.lasting else IN_PASSING)
         return found[0] if len(found) == 1 else {"kind": "all", "of": found}
+
+
+def certify_columns(said: Statement, columns: Matrix) -> dict[str, Any] | str:
+    """A certificate with these columns, or why there is none."""
+    motion = said.motion
+    with suppress(NavsymError):
+        long = count_terms(columns) > COLUMN_TERMS[bool(motion.rates)]
+        columns, free = diagonal_columns([] if long else columns, motion.size, motion.ring, said.system)
+        if len(columns) != motion.size - said.rank:
+            return LONG
+        shares = factors_of(said, columns, free, said.zeros) if said.zeros else []
+        return NO_SHARES if shares is None else first_granted(propose(said, columns, free, shares))
+    return LONG
+
+
+def first_granted(proposed: Iterable[dict[str, Any]]) -> dict[str, Any] | str:
+    """The first certificate that the checker accepts; what it refuses for its length is as long with other points."""
+    for item in proposed:
+        try:
+            checker.check(item)
+        except checker.Refused as refusal:
+            if "too many terms" in str(refusal):
+                return LONG
+            continue
+        return item
+    return NO_POINT
+
+
+def count_terms(columns: Matrix) -> int:
+    """Terms of all entries."""
+    return sum(map(len, chain(*columns)))
+
+
+def shorten_columns(columns: Matrix, said: Statement) -> Matrix:
+    """The same directions on the system, without the variables that its equations name and without common factors."""
+    for f, place in zip(said.system, own_variables(said.system, said.ring), strict=True):
+        if place is not None:
+            columns = [replace_in_row(column, f, place, said.ring) for column in columns]
+    return [primitive_vector(column, said.ring) for column in columns]
 
 
 def list_nested(drops: Iterable[RankDrop]) -> Iterator[RankDrop]:
@@ -163,7 +197,8 @@ def propose(
     factors = sp.Matrix(len(shares), len(named), [x for row in shares for x in row])
     symbols, rates = symbols_and_rates(said.model, [said.model.F, H, null, factors, sp.Matrix(named)])
     rates |= {t: -(t**2) * slope} if said.nonzero and slope != 0 else {}
-    for point in points_on(zeros, said, symbols):
+    searched = ({s: sp.Integer(1) for s in symbols} | at for at in islice(search_points(zeros, ring), POINTS))
+    for point in chain(points_on(zeros, said, symbols), searched if zeros and not said.motion.roots else ()):
         value = known.subs(point)
         if value == 0:
             continue
@@ -209,7 +244,7 @@ def diagonal_columns(columns: Matrix, n: int, ring: Ring, system: System | None 
 
     Where the system vanishes, none vanishes in its place.
     """
-    if sum(len(x) for column in columns for x in column) > COLUMN_TERMS[0]:
+    if count_terms(columns) > COLUMN_TERMS[0]:
         return [], []
     places = free_places(columns, n, system or [])
     if len(places) < len(columns):

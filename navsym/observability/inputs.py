@@ -8,7 +8,7 @@ Molinari 1976). A nonlinear model is linearised along its motion, whose inputs a
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cache
 from itertools import pairwise
@@ -174,23 +174,12 @@ def observe_driven(contents: ModelFile) -> tuple[LinearModel, JointObservability
         rows = null_vectors(shown_functionals(driven, [driven.rows[j] for j in places], point), model.size, ring)
         return sp.ImmutableMatrix(len(rows), model.size, [ring.expression(x) for row in rows for x in row])
 
-    unseen = unseen_by(tuple(range(len(driven.rows))))
-    columns = [numerators([unseen[k, :]], ring)[0][0] for k in range(unseen.rows)]
-    proved = find_friend(driven, driven.rows, columns, point) is not None
-    return model, observe_by_subsets(model.states, model.measurements, unseen_by, proved)
-
-
-def observe_by_subsets(
-    states: tuple[str, ...],
-    names: tuple[str, ...],
-    unseen_by: Callable[[tuple[int, ...]], sp.ImmutableMatrix],
-    proved: bool = True,
-) -> JointObservability:
-    """The answer for a model without chains, from the directions that the measurements in some places do not show."""
-    n, single = len(states), [unseen_by((j,)) for j in range(len(names))]
+    n, names = model.size, model.measurements
+    single = [unseen_by((j,)) for j in range(len(names))]
     unseen = [unseen_by(tuple(range(j + 1))) for j in range(len(names))]
-    return JointObservability(
-        states,
+    columns = [numerators([unseen[-1][k, :]], ring)[0][0] for k in range(unseen[-1].rows)]
+    return model, JointObservability(
+        model.states,
         measurements=tuple(
             MeasurementObservability(name, annihilator(rows, n), (), n - rows.rows)
             for name, rows in zip(names, single, strict=True)
@@ -200,7 +189,7 @@ def observe_by_subsets(
         assumptions=(),
         written=None,
         observed=annihilator(unseen[-1], n),
-        proved=proved,
+        proved=find_friend(driven, driven.rows, columns, point) is not None,
     )
 
 

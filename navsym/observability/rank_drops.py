@@ -37,6 +37,7 @@ from navsym.observability.tree import (
     Cases,
     Leaf,
     is_covered,
+    is_empty,
     leaf_on,
     lost_columns,
     named_values,
@@ -140,23 +141,9 @@ def determinant_at(starts: Sequence[tuple[Table, int]], motion: Table, n: int, p
 def along_first_axis(values: list[fmpz], bound: int) -> list[fmpz]:
     """From values at 0..bound to coefficients along the first axis of a grid, which becomes the last one."""
     size = bound + 1
-    table = fmpz_mat(size, len(values) // size, values)
-    found = (newton(bound) * table).transpose().entries()
-    scale = math.factorial(bound)
-    return [value // scale for value in found]
-
-
-def newton(bound: int) -> fmpz_mat:
-    """bound! times the inverse of the matrix of powers of 0..bound: Lagrange's polynomials, in integers."""
-    columns = []
-    for own in range(bound + 1):
-        others = [other for other in range(bound + 1) if other != own]
-        product = [1]
-        for other in others:
-            product = [a - other * b for a, b in zip([0, *product], [*product, 0], strict=True)]
-        share = math.factorial(bound) // math.prod(own - other for other in others)
-        columns.append([share * c for c in product])
-    return fmpz_mat(bound + 1, bound + 1, [c for row in zip(*columns, strict=True) for c in row])
+    powers = fmpz_mat([[k**j for j in range(size)] for k in range(size)])
+    found: Any = powers.solve(fmpz_mat(size, len(values) // size, values))
+    return [value.p for value in found.transpose().entries()]
 
 
 #: Cases of rows that do not move.
@@ -294,7 +281,8 @@ class View:
                     leaves=leaves,
                 )
             )
-        partial = [(conditions_on(leaf.system, ring), leaf) for leaf in known if leaf.nonzero]
+        real = [leaf for leaf in known if leaf.nonzero and not is_empty(leaf.system, ring.with_units(leaf.nonzero))]
+        partial = [(conditions_on(leaf.system, ring), leaf) for leaf in real]
         return listed + [
             self.make_drop(zeros, nonzero=tuple(map(ring.condition, leaf.nonzero)), rank=leaf.rank, leaves=(leaf,))
             for zeros, leaf in partial

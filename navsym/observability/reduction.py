@@ -130,7 +130,7 @@ def two_squares(f: Poly, ring: Ring) -> tuple[int, Poly, Poly, Poly] | None:
         if gap == 0 or is_somewhere_positive(gap):
             continue
         content, factors = factor_exactly(gap)
-        if content < 0 and all(power % 2 == 0 or is_sum_of_squares(base) for base, power in factors):
+        if content < 0 and all(power % 2 == 0 or is_nowhere_negative(base) for base, power in factors):
             rest = prod((base for base, _ in factors), start=ring.constant(1))
             return place, twice, slope - twice * ring.context.gen(place), rest
     return None
@@ -142,9 +142,13 @@ def is_somewhere_positive(f: Poly) -> bool:
     return any(int(e) % 2 for e in f.degrees()) or any(c > 0 or any(int(e) % 2 for e in powers) for c, powers in ends)
 
 
-def is_sum_of_squares(f: Poly) -> bool:
-    """True for monomials of even powers with positive factors."""
-    return all(int(c) > 0 and not any(int(p) % 2 for p in powers) for powers, c in f.to_dict().items())
+def is_nowhere_negative(f: Poly) -> bool:
+    """True for monomials of even powers with positive factors, and for what is proved to be >= 0 at all real points."""
+    if all(int(c) > 0 and not any(int(p) % 2 for p in powers) for powers, c in f.to_dict().items()):
+        return True
+    if len(f) > DEFINITE_TERMS or any(int(e) % 2 for e in f.degrees()):
+        return False
+    return all(f(*point) >= 0 for point in small_points(f.context().nvars())) and has_sign(Hashed(f), Sign.NONNEGATIVE)
 
 
 def reduce_generators(system: list[Poly], ring: Ring) -> list[Poly] | None:
@@ -175,14 +179,14 @@ def is_definite(f: Poly) -> bool:
         return False
     if any(f(*point) * at_zero <= 0 for point in small_points(size)):
         return False
-    return is_positive(Hashed(f if at_zero > 0 else -f))
+    return has_sign(Hashed(f if at_zero > 0 else -f), Sign.POSITIVE)
 
 
 @functools.lru_cache(4096)
-def is_positive(value: Hashed) -> bool:
-    """True for a polynomial that is proved to be positive at all real points; a search meets the same ones often."""
+def has_sign(value: Hashed, sign: Sign) -> bool:
+    """True for a polynomial that is proved to have a sign at all real points; a search meets the same ones often."""
     names = [sp.Symbol(f"x{k}", real=True) for k in range(value.poly.context().nvars())]
-    return prove_sign(polynomial_sum(names, value.poly), {}, Sign.POSITIVE).sign == Sign.POSITIVE
+    return prove_sign(polynomial_sum(names, value.poly), {}, sign).at_least(sign)
 
 
 @functools.cache

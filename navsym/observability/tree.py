@@ -19,6 +19,7 @@ import heapq
 from collections.abc import Callable, Sequence
 from contextlib import suppress
 from dataclasses import dataclass, field, replace
+from itertools import combinations
 from typing import Any
 
 import sympy as sp
@@ -59,6 +60,8 @@ NODES, TERMS, SPLIT_TERMS = 120, 2000, 400
 MOVING_NODES = 24
 #: Equations added when a condition is to hold along a motion, and terms of them.
 STEPS, MOVED_TERMS = 200, 120
+#: Of a division with remainder: products of terms for one step, and degree; and letters of a factor of what is left.
+PRODUCTS, DEGREE, LETTERS = 20_000, 40, 400
 #: Groebner bases of saturations: number of polynomials, terms, bits.
 SATURATION = (40, 150, 500)
 
@@ -327,6 +330,62 @@ def solve_further(system: System, ring: Ring, motion: Motion | None) -> Parts | 
     if any(len(f) > SOLUTION for f in system):
         raise TooLargeError(f"expected equations of at most {SOLUTION} terms; got more; fix some parameters")
     return derived_parts(system, unsolved, ring, motion)
+
+
+def is_empty(system: System, ring: Ring) -> bool:
+    """True when it is proved that no real point satisfies the equations where no unit vanishes."""
+    waiting = [(system, ring)]
+    for _ in range(STEPS):
+        if not waiting:
+            return True
+        part, ring = waiting.pop()
+        tidy = tidy_system(part, ring, False)
+        if tidy is None or restricted(Node(part, ring, UnitBasis(ring), []), tidy) is None:
+            continue
+        try:
+            parts = solve_further(tidy, ring, None)
+        except TooLargeError:
+            return False
+        if parts is None:
+            factors = split_remainders([f for f, place in solved_variables(tidy, ring) if place is None], ring)
+            parts = None if factors is None else [([*tidy, factor], ring) for factor in factors]
+        if parts is None:
+            return False
+        waiting += parts
+    return False
+
+
+def split_remainders(system: System, ring: Ring) -> list[Poly] | None:
+    """Factors of which one vanishes wherever the system does, none of them in its ideal; None where none were found.
+
+    Euclid's remainders of two equations in a variable vanish with both, and so does what is left without units.
+    """
+    for f, g in combinations(sorted(system, key=len), 2):
+        for place in (k for k, degree in enumerate(g.degrees()) if degree and f.degrees()[k]):
+            top, bottom = sorted((f, g), key=lambda h: -int(h.degrees()[place]))
+            while bottom != 0 and bottom.degrees()[place]:
+                rest = pseudo_remainder(top, bottom, place)
+                if rest is None or rest == 0:
+                    break
+                top, bottom = bottom, ring.without_units(rest.primitive()[1])
+                factors = irreducible_factors(bottom)
+                short = all(len(str(factor)) <= LETTERS for factor in factors)
+                if short and not any(lies_in_ideal(factor, system) for factor in factors):
+                    return factors
+    return None
+
+
+def pseudo_remainder(top: Poly, bottom: Poly, place: int) -> Poly | None:
+    """The rest of a division in a variable, times factors that keep it a polynomial; None where it gets long."""
+    x, degree = top.context().gen(place), int(bottom.degrees()[place])
+    lead = powers_apart(bottom, place)[degree,]
+    while top != 0 and (own := int(top.degrees()[place])) >= degree:
+        share = powers_apart(top, place)[own,]
+        if len(top) * len(lead) + len(bottom) * len(share) > PRODUCTS or top.total_degree() > DEGREE:
+            return None
+        common = share.gcd(lead)
+        top = lead / common * top - share / common * x ** (own - degree) * bottom
+    return top
 
 
 def linear_places(f: Poly) -> list[tuple[int, Poly]]:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import copy
+import itertools
 import time
 
 import pytest
@@ -12,9 +13,11 @@ import navsym as nav
 from navsym import checker
 from navsym.cli.main import run
 from navsym.models.linear import LinearModel
-from navsym.observability import document
+from navsym.observability import certificates, document
 from navsym.observability.answer import observe_linear
 from navsym.observability.certificates import LONG, NO_SHARES, Certifier, is_granted, list_nested, solve_near
+from navsym.observability.points import search_points
+from navsym.observability.ring import Ring
 
 REAL = "real"
 
@@ -185,6 +188,36 @@ def test_points_are_whole_numbers_where_the_roots_of_fractions_are_too_long_for_
     circle = (p**2 + q**2) * (r * y - s * x) + (p * s - q * r) * (x**2 + y**2) - (r**2 + s**2) * (p * y - q * x)
     item = ask(sp.Matrix([[circle + u - v, v - w]]), 0, [[1, 0], [0, 1]], [u - v, v - w, sp.expand(circle)])
     assert checker.check(item) and all("/" not in item["point"][name] for name in ("p2", "q2", "r2"))
+
+
+@pytest.mark.parametrize(
+    "equation",
+    [
+        "x**2 + y**2 - 3*z**2",
+        "40*x**8 + 112*x**6*y**2 + 96*x**4*y**4 + 16*x**2*y**6 - 8*y**8 + 72*x**7*y*z + 108*x**5*y**3*z - 36*x*y**7*z"
+        "- 27*x**6*y**2*z**2 - 81*x**4*y**4*z**2 - 54*x**2*y**6*z**2 - 81*x**5*y**3*z**3 - 81*x**3*y**5*z**3"
+        "- 81*x**4*y**4*z**4",
+    ],
+)
+def test_points_may_be_multiples_of_square_roots(equation):
+    ring = Ring.of(sp.symbols("x y z", real=True))
+    zero = sp.sympify(equation, locals={str(s): s for s in ring.symbols})
+    points = [*itertools.islice(search_points([ring.quotient(zero).top], ring), 2)]
+    assert len(points) == 2 and all(sp.expand(zero.subs(point)) == 0 for point in points)
+    assert not any(all(value.is_Rational for value in point.values()) for point in points)
+
+
+def test_a_circle_without_rational_points_has_a_certificate():
+    x, y = sp.symbols("x y", real=True)
+    assert checker.check(ask(sp.Matrix([[x**2 + y**2 - 3, 0]]), 0, [[1, 0], [0, 1]], [x**2 + y**2 - 3]))
+
+
+def test_a_direction_that_has_a_factor_in_common_where_the_condition_holds_is_written_without_it(monkeypatch):
+    monkeypatch.setattr(certificates, "COLUMN_TERMS", (40, 40))
+    a, b = sp.symbols("a b", real=True)
+    long = sp.expand((a + b + 1) ** 5)
+    item = ask(sp.Matrix([[a, b]]), 1, [[long * a, -long * b]], [a - b])
+    assert item["null"] in ([["1", "-1"]], [["-1", "1"]]) and checker.check(item)
 
 
 def test_what_the_checker_does_not_grant_is_printed_with_its_reason(tmp_path, capsys):

@@ -45,7 +45,15 @@ def test_sums_of_squares_vanish_over_the_reals_only_term_by_term():
     assert conditions(model) == {}
 
 
-@pytest.mark.parametrize("f", [(a - b * c) ** 2 + c**2 * (b**2 + 1), (a * b - c) ** 2 + (a + c) ** 2, (a - b) ** 2 - c])
+@pytest.mark.parametrize(
+    "f",
+    [
+        (a - b * c) ** 2 + c**2 * (b**2 + 1),
+        (a * b - c) ** 2 + (a + c) ** 2,
+        (a - b) ** 2 - c,
+        4 * a**2 * b**2 * c**2 + 9 * a**4 - 14 * a**2 * b**2 + 9 * b**4,
+    ],
+)
 def test_two_squares_vanish_together_and_nowhere_else(f):
     found = observe_jointly(LinearModel(sp.Matrix([[0, f], [0, 0]]), None, [[1, 0]]))
     drops, complete = drops_and_completeness(found)

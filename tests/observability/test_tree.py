@@ -22,7 +22,7 @@ from navsym.observability.motion import residue_chains
 from navsym.observability.rank_drops import find_drops
 from navsym.observability.reduction import lower_row
 from navsym.observability.ring import Ring
-from navsym.observability.tree import search_drops
+from navsym.observability.tree import is_empty, search_drops
 from navsym.studies.atlas.scenes import model_of
 from tests.sampling import thinned
 from tests.studies.atlas_cells import find_joint_drops
@@ -47,6 +47,24 @@ def test_a_row_loses_a_unit_as_often_as_all_its_entries_hold_it():
     row = [6 * (x**2 + 1) ** 2 * y, 0 * x, 4 * (x**2 + 1) ** 3 * (x - y) * y]
     assert lower_row(row, ring) == [3 + 0 * x, 0 * x, 2 * (x**2 + 1) * (x - y)]
     assert lower_row([x - y, y], ring) == [x - y, y] and lower_row([0 * x], ring) == [0 * x]
+
+
+def test_a_system_with_a_real_point_is_never_called_empty_and_one_without_is():
+    source, x = random.Random(4), sp.symbols("x1:5", real=True)
+    plain = Ring.of(x)
+    read = lambda f: plain.quotient(sp.expand(f)).top  # noqa: E731
+    monomials = [*x, *(p * q for p, q in itertools.combinations_with_replacement(x, 2)), *(p**2 * x[0] for p in x)]
+    for _ in range(40):
+        at = {s: source.randint(-2, 2) for s in x}
+        formulas = [sum(source.choice((0, 1, -1, 2)) * m for m in source.sample(monomials, 5)) for _ in range(5)]
+        system = [read(f - f.subs(at)) for f in formulas[:3] if f]
+        units = [read(f) for f in formulas[3:] if f and f.subs(at) != 0]
+        assert not is_empty(system, plain.with_units(units)), (formulas, at)
+    y, z, u, v = x
+    f = z**2 * y + u * z - y * v**2 - u * v
+    empty = [read(f), read((u * z - u * v) * (z + 1) + f), read(y * v + u + v**2 * (y - 1) ** 2 + 1)]
+    assert is_empty(empty, plain.with_units([read(u), read(z + 1), read(y), read(v - z)])) is True
+    assert not is_empty(empty[:1], plain.with_units([read(u)]))
 
 
 def exact_rank(model: LinearModel, at: dict[sp.Symbol, int]) -> int:
