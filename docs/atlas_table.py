@@ -40,8 +40,7 @@ along the motion, and no row is typed.
   question mark: proved from below only.
 * An empty place is a cell that takes more than a minute: on the way its rows, or what its certificates have to say,
   get thousands of terms.
-* A rank that the checker does not grant stands as unchecked, with the reason: directions that are too long to write, no
-  short sums of the zeros of the condition for what has to vanish with them, or no exact point on the condition.
+* A rank that the checker does not grant stands as unchecked, with the reason: directions that are too long to write.
 * Each rank is that of textbook error equations in other coordinates, too, modulo a prime
   (`tests/studies/test_atlas.py`).
 
