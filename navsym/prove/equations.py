@@ -11,6 +11,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import replace
 
 import sympy as sp
+import sympy.tensor.tensor  # the first sum loads it: in each child again, for 30 ms
 from flint import arb
 
 from navsym.claims.statement import Bound, Box, Equation

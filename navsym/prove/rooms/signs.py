@@ -5,11 +5,10 @@ from __future__ import annotations
 import functools
 import itertools
 from collections.abc import Iterator
-from fractions import Fraction
 from typing import Any
 
 import sympy as sp
-from flint import arb, fmpq, fmpq_mpoly
+from flint import arb, fmpq, fmpq_mat, fmpq_mpoly
 
 from navsym.core.exact import to_fmpq
 from navsym.language.expression import to_text
@@ -83,16 +82,43 @@ def by_identity(goal: Any, sample: list[arb]) -> Iterator[Proof]:
 
 
 def find_weights(goal: Any) -> list[str] | None:
-    """Weights >= 0 of the hypotheses that may add up to the term: least squares over the coefficients."""
+    """Weights >= 0 of the hypotheses that add up to the term.
+
+    Least squares over the coefficients (Lawson and Hanson, Solving least squares problems, 1974), in fractions: a
+    library of numbers takes half a second to load, in each child again.
+    """
     if not goal.given:
         return None
-    from scipy.optimize import nnls  # a half of what starting takes otherwise
-
     forms = [sp.expand(to_sympy(t)).as_coefficients_dict() for t in (goal.term, *goal.given)]
-    monomials = list(dict.fromkeys(m for form in forms for m in form))
-    rows = [[float(form.get(m, 0)) for m in monomials] for form in forms]
-    weights, rest = nnls([list(column) for column in zip(*rows[1:], strict=True)], rows[0])
-    return [str(Fraction(w).limit_denominator(1000)) for w in weights] if rest < 1e-9 else None
+    monomials = dict.fromkeys(m for form in forms for m in form)
+    rows = [[to_fmpq(form.get(m, 0)) for form in forms] for m in monomials]
+    columns, wanted = fmpq_mat([row[1:] for row in rows]), fmpq_mat([row[:1] for row in rows])
+    slopes, squares = columns.transpose() * wanted, columns.transpose() * columns
+    weights: dict[int, fmpq] = {}
+    while True:
+        x = fmpq_mat([[weights.get(k, fmpq(0))] for k in range(len(goal.given))])
+        if columns * x == wanted:
+            return [str(value[0]) for value in x.tolist()]
+        rising = slopes - squares * x
+        best = max(range(len(goal.given)), key=lambda k: rising[k, 0])
+        if rising[best, 0] <= 0:
+            return None
+        weights = keep_positive(weights | {best: fmpq(0)}, slopes, squares)
+
+
+def keep_positive(weights: dict[int, fmpq], slopes: fmpq_mat, squares: fmpq_mat) -> dict[int, fmpq]:
+    """The least squares of chosen columns; those whose weight would fall below zero on the way are left out."""
+    while True:
+        names = [*weights]
+        best = fmpq_mat([[squares[i, j] for j in names] for i in names]).solve(
+            fmpq_mat([[slopes[i, 0]] for i in names])
+        )
+        target = {k: best[i, 0] for i, k in enumerate(names)}
+        falling = [weights[k] / (weights[k] - target[k]) for k in names if target[k] <= 0]
+        if not falling:
+            return target
+        weights = {k: w + min(falling) * (target[k] - w) for k, w in weights.items()}
+        weights = {k: w for k, w in weights.items() if w > 0}
 
 
 def by_range(goal: Any, sample: list[arb]) -> Iterator[Proof]:
