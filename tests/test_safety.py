@@ -34,6 +34,7 @@ UNDECIDED_METHODS = frozenset({"simplify", "trigsimp", "nsimplify", "equals"})
 #: File -> reason why it may use a function of UNDECIDED as a search that something else decides.
 SEARCHES: dict[str, str] = {
     "navsym/guaranteed/phases/closed_forms.py": "short forms of closed formulas; the formulas are proved afterwards",
+    "navsym/observability/points.py": "points with square roots; the checker evaluates the equations there",
     "navsym/prove/calculus/candidates.py": "antiderivatives and telescopers; the checker differentiates them",
     "navsym/prove/rooms/equations.py": "guesses of simpler roots; the checker shows that they are equal",
 }

@@ -216,7 +216,7 @@ def test_a_change_at_zero_is_found_and_the_mirrored_regime_has_its_closed_form()
     assert sp.expand(answer.regimes[2].closed.value) == 8 * k + 1 and answer.regimes[2].status == "PROVED"
 
 
-@pytest.mark.long
+@pytest.mark.slow
 def test_a_boundary_that_is_not_located_is_enclosed_by_what_is_proved_on_both_sides(monkeypatch):
     monkeypatch.setattr(events, "recognise_root", lambda *_: None)
     monkeypatch.setattr(events, "is_pattern_optimal", lambda *_: False)

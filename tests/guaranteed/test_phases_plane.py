@@ -153,8 +153,9 @@ def test_what_is_not_proved_in_time_is_named():
     assert found.uncovered and found.given_up and found.covered < 1.0
 
 
-@pytest.mark.long
-@pytest.mark.parametrize("target", ["drift", "tilt"])
+@pytest.mark.parametrize(
+    "target", [pytest.param("drift", marks=pytest.mark.long), pytest.param("tilt", marks=pytest.mark.slow)]
+)
 def test_the_channel_with_a_free_frequency_follows_the_law_of_scaling(target):
     """In the time w t there is one parameter, w T: the map is that of T with curves c/w."""
     model = nav.Model(**SCHULER, sigma=["1"])
