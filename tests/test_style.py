@@ -57,6 +57,7 @@ def test_the_linter_finds_nothing(words: str) -> None:
     assert not (found := run_tool("ruff", *words.split(), ".")), found
 
 
+@pytest.mark.long
 def test_the_types_fit() -> None:
     assert not (found := run_tool("mypy", "--no-error-summary")), found
 

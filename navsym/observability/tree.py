@@ -60,8 +60,8 @@ NODES, TERMS, SPLIT_TERMS = 120, 2000, 400
 MOVING_NODES = 24
 #: Equations added when a condition is to hold along a motion, and terms of them.
 STEPS, MOVED_TERMS = 200, 120
-#: Of a division with remainder: products of terms for one step, and degree; and letters of a factor of what is left.
-PRODUCTS, DEGREE, LETTERS = 20_000, 40, 400
+#: Of divisions with remainder: products of terms for a step, degree, letters of a factor of what is left, and how many.
+PRODUCTS, DEGREE, LETTERS, REMAINDERS = 20_000, 40, 400, 60
 #: Groebner bases of saturations: number of polynomials, terms, bits.
 SATURATION = (40, 150, 500)
 
@@ -360,11 +360,14 @@ def split_remainders(system: System, ring: Ring) -> list[Poly] | None:
 
     Euclid's remainders of two equations in a variable vanish with both, and so does what is left without units.
     """
+    count = 0
     for f, g in combinations(sorted(system, key=len), 2):
         for place in (k for k, degree in enumerate(g.degrees()) if degree and f.degrees()[k]):
             top, bottom = sorted((f, g), key=lambda h: -int(h.degrees()[place]))
             while bottom != 0 and bottom.degrees()[place]:
-                rest = pseudo_remainder(top, bottom, place)
+                rest, count = pseudo_remainder(top, bottom, place), count + 1
+                if count > REMAINDERS:
+                    return None
                 if rest is None or rest == 0:
                     break
                 top, bottom = bottom, ring.without_units(rest.primitive()[1])

@@ -11,7 +11,7 @@ from tests.attacks import brute, false_twins
 SEED = 18
 
 
-@pytest.mark.parametrize("name", brute.VERBS)
+@pytest.mark.parametrize("name", [pytest.param(n, marks=[pytest.mark.long] * (n == "track")) for n in brute.VERBS])
 def test_answers_are_those_of_brute_force(name: str) -> None:
     assert brute.list_faults(name, range(2), SEED) == []
 

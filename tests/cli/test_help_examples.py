@@ -43,8 +43,8 @@ def reason(words):
     return next((why for start, why in NOT_HERE.items() if line.split(" --")[0].startswith(start)), "")
 
 
-#: The first example of the README, which runs it too, and of docs/model_files.md.
-LONG = ("phases",)
+#: The first example of the README, which runs it too, and of docs/model_files.md; what is compiled first.
+LONG = ("phases", "track")
 HERE = [
     pytest.param(
         verb, words, id=verb, marks=[pytest.mark.slow] if verb in SLOW else [pytest.mark.long] if verb in LONG else []

@@ -25,7 +25,9 @@ def signals(models):
     return multimodel_study.simulate(models, 19, 6, seed=3)
 
 
-@pytest.mark.parametrize("method", ["pulsating", "imm", "polygaussian", "gpb2"])
+@pytest.mark.parametrize(
+    "method", ["imm", "gpb2", *(pytest.param(name, marks=pytest.mark.long) for name in ("pulsating", "polygaussian"))]
+)
 def test_a_batch_is_its_runs_one_by_one(models, signals, method):
     mean, covariance, probabilities, logs = run_batch(models, signals.measurements, method)
     for row, z in enumerate(signals.measurements):

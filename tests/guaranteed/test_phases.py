@@ -110,6 +110,7 @@ SCHULER = {
 }
 
 
+@pytest.mark.long
 def test_the_frequency_is_a_parameter_like_any_other():
     document = json.loads(json.dumps(SCHULER))
     del document["measurement"][1], document["parameters"]["s"]

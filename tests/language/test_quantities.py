@@ -128,7 +128,7 @@ def test_a_quantity_is_in_the_unit_that_a_model_declares():
     for wrong in ({"w": Q(1, "m")}, {"T": "1 deg"}, {"T": Q(5, "hour")}, {"T": "5 h"}):
         with pytest.raises(nav.NavsymError, match=r"expected a (quantity in|value in the declared)"):
             model.read(wrong)
-    phases = nav.phases(model, "s", w=1, k=1, T=(Q(6, "s"), Q(60, "s")))
+    phases = nav.phases(model, "s", w=1, k=1, T=(Q(6, "s"), Q(60, "s")), seconds=2)
     assert phases.regimes[0].ends == ("1/10", "1")
 
 

@@ -51,7 +51,7 @@ def test_regimes_differ_in_line_style_as_well_as_in_colour():
     assert len({line.get_linestyle() for line in drawn}) == len({line.get_color() for line in drawn}) == 2
 
 
-@pytest.mark.parametrize("name", ["modes", "phases"])
+@pytest.mark.parametrize("name", ["modes", pytest.param("phases", marks=pytest.mark.long)])
 def test_pictures_of_the_documentation_are_drawn_by_what_the_package_draws(name):
     """What a picture adds to a drawing of the package is done to its axes: options of the drawing come and go."""
     from docs import pictures

@@ -73,7 +73,7 @@ def test_the_243_candidates_of_the_paper_in_one_pass_equal_one_at_a_time():
         assert_allclose(fast.diagonals, slow.diagonals, rtol=1e-12)
 
 
-@pytest.mark.parametrize("n", [1, 2, 3, 4])
+@pytest.mark.parametrize("n", [*(pytest.param(n, marks=pytest.mark.long) for n in (1, 2, 3)), 4])
 def test_carried_candidates_equal_single_filters(n):
     fast = windowed_filter(Z, normalised(n), start(n), Tuning(1.0), window=8)
     slow = windowed_filter_slowly(Z, normalised(n), start(n), Tuning(1.0), window=8)

@@ -177,7 +177,8 @@ def test_standard_deviations_are_consistent_with_the_errors(method, order):
     assert low < total / count < high
 
 
-@pytest.mark.parametrize("order", [2, pytest.param(3, marks=pytest.mark.long)])
+@pytest.mark.long
+@pytest.mark.parametrize("order", [2, 3])
 def test_estimated_noise_costs_no_more_consistency_than_known_noise(order):
     """On the same tracks the squared errors over their variances are at most five per cent above those of known noise.
 
