@@ -137,6 +137,7 @@ def test_no_certificate_of_the_page_is_refused_and_no_forgery_accepted(program: 
     assert sum(a.startswith("refused") for a in answers) >= 287
 
 
+@pytest.mark.long
 def test_both_checkers_agree_on_every_row_of_the_tests_of_the_first(program: Path) -> None:
     """True certificates of each rule and question, and those that lack one hypothesis; work and balls apart."""
     noted = []

@@ -200,7 +200,8 @@ def cards_of(document: dict[str, Any]) -> tuple[Card, ...]:
     return find_candidates(problem, Comparison(problem)).candidates
 
 
-@pytest.mark.parametrize("name", ["Sola, local error", pytest.param("right invariant", marks=pytest.mark.long)])
+@pytest.mark.long
+@pytest.mark.parametrize("name", ["Sola, local error", "right invariant"])
 def test_spoiled_models_are_noticed(name):
     document = models.PUBLISHED[name]()
     right, mutants = cards_of(document), list_mutants(document)

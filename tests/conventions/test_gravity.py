@@ -168,7 +168,8 @@ def test_a_measured_height_excludes_frames_without_one_and_no_more():
     assert found.model()["H"][0].count("0") == 14
 
 
-@pytest.mark.parametrize("azimuth", ["north", pytest.param("wander", marks=pytest.mark.long)])
+@pytest.mark.long
+@pytest.mark.parametrize("azimuth", ["north", "wander"])
 def test_a_named_wander_angle_serves_axes_to_the_north_for_conversions(azimuth):
     other = {"north": "wander", "wander": "north"}[azimuth]
     document = document_of({**LEVEL, "azimuth": azimuth}, radii="R", earth_rate="W", wander_angle="longitude")

@@ -98,6 +98,7 @@ def test_a_regime_without_a_closed_form_is_exported_compiled_and_replayed(found,
         assert list(times) == pytest.approx([float(p.at) for p in known.support], abs=1e-12)
 
 
+@pytest.mark.long
 def test_noise_bounds_and_panels_that_move_with_the_parameter_are_part_of_the_table():
     model = nav.Model.from_basis(
         [["1", "s", "exp(s)"], ["0", "1", "exp(s)"]], variable="s", interval=["0", "1"], sigma=["1", "p"],
