@@ -31,6 +31,8 @@ from navsym.prove.rooms.goals import (
 CELLS = (120, 2500)
 #: Comparisons of variables in one proof by cones.
 MOST_SPLITS = 300
+#: Symbols of separate terms whose corners are looked at.
+MOST_CORNERS = 6
 #: Numbers in a term whose sums are compared with it.
 MOST_NUMBERS = 4
 FEW_SAMPLES = 4
@@ -263,13 +265,13 @@ def separate(goal: Any, terms: list[Term]) -> Iterator[Proof]:
 
 
 def least_at_ends(term: Term, box: Any) -> Term | None:
-    """The lesser value of a term in one symbol at the ends of its range; None where these are no numbers."""
+    """The lesser value of a term in one symbol at the ends of its range; None where it has no two ends."""
     names = player.symbols_of(term)
     ends = [end for name in names for end in box[name][:2]]
     if len(names) != 1 or None in ends:
         return None
-    values = [player.constant_of(player.substitute(term, dict.fromkeys(names, end))) for end in ends]
-    return None if None in values else player.number(min(values))
+    low, high = (player.substitute(term, dict.fromkeys(names, end)) for end in ends)
+    return high if player.value_of(player.subtract(low, high), {}) > 0 else low
 
 
 def split_slack(goal: Any) -> Iterator[Proof]:
@@ -308,8 +310,9 @@ def by_corners(goal: Any, sample: list[arb]) -> Iterator[Proof]:
     ends = {v: goal.box[v.name] for v in sorted(expression.free_symbols, key=str)}
     closed = [v for v, limit in ends.items() if limit.low is not None and limit.high is not None]
     names = [v.name for v in closed if expression.is_polynomial(v) and sp.degree(expression, v) == 1]
-    apart = len(ends) > 1 and all(len(t.free_symbols) < 2 for t in sp.Add.make_args(sp.expand(expression)))
-    for name in names if not apart else ():  # corners double with each symbol, and the terms are separate
+    if len(names) > MOST_CORNERS and all(len(t.free_symbols) < 2 for t in sp.Add.make_args(sp.expand(expression))):
+        return  # corners double with each symbol, and the terms are separate
+    for name in names:
         yield {"rule": "corners", "symbols": [name], "proofs": Holes()}
 
 
